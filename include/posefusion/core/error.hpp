@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+
+namespace posefusion {
+
+/// What the user gave cannot be used: a file, a topic, a parameter. The message names it, its value
+/// and what was expected. Tools print it and exit with 1; nodelets count it and go on.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace posefusion

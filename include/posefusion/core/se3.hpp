@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace posefusion {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Skew-symmetric matrix: hat(a) * b = a x b.
+Eigen::Matrix3d hat(const Eigen::Vector3d& omega);
+
+/// Rotation of an axis-angle vector (rad), Rodrigues' formula.
+Eigen::Matrix3d expSo3(const Eigen::Vector3d& omega);
+
+/// Axis-angle vector (rad, length <= pi) of a rotation.
+Eigen::Vector3d logSo3(const Eigen::Matrix3d& rotation);
+
+/// Rigid motion of a twist (translation part v in metres first, rotation part omega in rad last).
+Eigen::Isometry3d expSe3(const Vector6d& twist);
+
+/// Twist of a rigid motion; inverse of expSe3 for rotations below pi.
+Vector6d logSe3(const Eigen::Isometry3d& T);
+
+/// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
+Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
+
+}  // namespace posefusion

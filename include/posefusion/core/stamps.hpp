@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace posefusion {
+
+/// Pairs two lists of stamps as the TUM benchmark does: of all pairs less than `max_difference_ns`
+/// apart the closest is taken first, and each stamp is used once. Indices into `first` and
+/// `second`, ordered by `first`. The lists need no order.
+std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
+    const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second,
+    std::int64_t max_difference_ns);
+
+}  // namespace posefusion

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/core/camera.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "posefusion/core/error.hpp"
+
+namespace posefusion {
+
+bool PinholeCamera::isDistorted() const {
+  for (const double d : distortion) {
+    if (d != 0.0) return true;
+  }
+  return false;
+}
+
+PinholeCamera PinholeCamera::shrunk(int factor) const {
+  PinholeCamera small = *this;
+  small.width = width / factor;
+  small.height = height / factor;
+  small.fx = fx / factor;
+  small.fy = fy / factor;
+  // The centre of the small pixel 0 lies at (factor - 1) / 2 in the large image.
+  small.cx = (cx - 0.5 * (factor - 1)) / factor;
+  small.cy = (cy - 0.5 * (factor - 1)) / factor;
+  return small;
+}
+
+bool PinholeCamera::operator==(const PinholeCamera& other) const {
+  return width == other.width && height == other.height && fx == other.fx && fy == other.fy &&
+         cx == other.cx && cy == other.cy && distortion == other.distortion;
+}
+
+void validate(const PinholeCamera& camera) {
+  const auto require = [](bool good, const char* name, double value, const char* expected) {
+    if (good) return;
+    throw InputError(std::string("camera: ") + name + " is " + std::to_string(value) +
+                     ", expected " + expected);
+  };
+  require(camera.width > 0, "width", camera.width, "more than 0 pixels");
+  require(camera.height > 0, "height", camera.height, "more than 0 pixels");
+  require(std::isfinite(camera.fx) && camera.fx > 0, "fx", camera.fx, "a focal length above 0");
+  require(std::isfinite(camera.fy) && camera.fy > 0, "fy", camera.fy, "a focal length above 0");
+  require(camera.cx > 0 && camera.cx < camera.width, "cx", camera.cx, "a column of the image");
+  require(camera.cy > 0 && camera.cy < camera.height, "cy", camera.cy, "a row of the image");
+  for (const double d : camera.distortion) {
+    require(std::isfinite(d), "a distortion coefficient", d, "a finite number");
+  }
+}
+
+}  // namespace posefusion
