@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace posefusion {
+
+/// COCO-18 joints in OpenPose's order.
+enum class Joint : int {
+  nose, neck, right_shoulder, right_elbow, right_wrist, left_shoulder, left_elbow, left_wrist,
+  right_hip, right_knee, right_ankle, left_hip, left_knee, left_ankle,
+  right_eye, left_eye, right_ear, left_ear
+};
+constexpr int kJointCount = 18;
+
+/// Names as in COCO, indexed by Joint ("nose", "neck", "right_shoulder", ...).
+extern const std::array<std::string_view, kJointCount> kJointNames;
+
+/// Joints that a drawing of a skeleton connects.
+extern const std::array<std::pair<Joint, Joint>, 17> kSkeletonLines;
+
+/// A joint in the image. Shape of the paper's matrix element (u, v, p).
+struct Keypoint {
+  float u = 0.0F;  ///< column, pixels
+  float v = 0.0F;  ///< row, pixels
+  float p = 0.0F;  ///< likelihood in (0, 1]; 0: the joint was not seen
+};
+
+struct Person {
+  std::array<Keypoint, kJointCount> joints{};
+  float score = 0.0F;  ///< mean score of joints and limbs
+};
+
+/// The people of one frame: the paper's [h x w] matrix with h <= 15.
+struct People {
+  std::int64_t stamp_ns = 0;
+  bool detected = false;  ///< false: the detector did not look at this frame
+  std::vector<Person> people;
+};
+
+}  // namespace posefusion
