@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "posefusion/map/model_view.hpp"
+#include "posefusion/segmentation/grid.hpp"
+
+namespace posefusion {
+
+/// What the map says of a cell.
+enum class Background : std::uint8_t {
+  unknown,  ///< the map has nothing there, or the cell has no depth
+  agrees,   ///< the cell is a surface of the map
+  recent,   ///< the cell is a surface that the map has seen for a few frames only: perhaps somebody
+            ///< who was missed
+  nearer,   ///< the cell lies clearly in front of everything that the map has there
+  farther   ///< the cell is seen through a surface of the map
+};
+
+/// Compares the grid with the map as rendered from another pose. `T_view_camera` takes points of the
+/// grid's camera to the view's. A cell agrees if any surface within a cell's reach in the view is at
+/// its depth, so that an error of a pixel or two in the pose does no harm; it is nearer only if all
+/// of them are behind.
+void compareWithModel(const SceneGrid& grid, const ModelView& view,
+                      const Eigen::Isometry3d& T_view_camera, std::vector<Background>& result);
+
+/// Predicts where the camera is from the last two views, by constant velocity.
+class MotionPredictor {
+ public:
+  /// T_view_camera for the frame at `stamp_ns` given the newest view. Call once per frame.
+  Eigen::Isometry3d predict(const ModelView& view, std::int64_t stamp_ns);
+  void reset() { *this = MotionPredictor(); }
+
+ private:
+  int frames_ = 0;
+  std::int64_t view_stamp_ns_ = 0;   ///< of the frame before this one
+  std::int64_t other_stamp_ns_ = 0;  ///< of the frame before that
+  Eigen::Isometry3d T_map_other_ = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace posefusion

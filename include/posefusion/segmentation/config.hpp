@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "posefusion/core/fields.hpp"
+
+namespace posefusion {
+
+/// Settings of the min-cut segmenter.
+struct SegmentationConfig {
+  bool enabled = true;
+  std::string energy = "improved";
+  double paper_sigma_m = 0.25;
+  double paper_radius_m = 0.20;
+  int grid_width = 160;
+  double sigma_m = 0.05;
+  double smoothness = 6.0;
+  double colour_weight = 1.0;
+  double model_weight = 2.5;
+  int carry_frames = 30;
+  int margin_px = 3;
+};
+
+inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
+  v.flag("enabled", c.enabled, "remove people from the depth");
+  v.choice("energy", c.energy, {"improved", "paper"}, "terms of the cut");
+  v.number("paper_sigma_m", c.paper_sigma_m, 1e-3, 10.0,
+           "energy paper: length scale of the smoothness cost");
+  v.number("paper_radius_m", c.paper_radius_m, 1e-3, 10.0,
+           "energy paper: length scale of the background penalty");
+  v.integer("grid_width", c.grid_width, 16, 640, "columns of the grid that is cut");
+  v.number("sigma_m", c.sigma_m, 1e-3, 10.0, "length scale of the smoothness cost");
+  v.number("smoothness", c.smoothness, 0.0, 1e3, "weight of the smoothness cost");
+  v.number("colour_weight", c.colour_weight, 0.0, 1e3, "weight of the colour likelihood");
+  v.number("model_weight", c.model_weight, 0.0, 1e3,
+           "weight of the agreement with the rendered map");
+  v.integer("carry_frames", c.carry_frames, 0, 10000,
+            "people are carried forward so many frames after they were last detected");
+  v.integer("margin_px", c.margin_px, 0, 50,
+            "rim around the mask that is removed from the depth too, at 640 pixels width");
+}
+
+}  // namespace posefusion

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "posefusion/core/frame.hpp"
+#include "posefusion/map/model_view.hpp"
+#include "posefusion/pose/skeleton.hpp"
+#include "posefusion/segmentation/config.hpp"
+
+namespace posefusion {
+
+/// A frame without its people.
+struct Segmentation {
+  cv::Mat mask;          ///< CV_8UC1, frame size, 255 = person; empty when there is none
+  cv::Mat static_depth;  ///< depth of the frame, people removed (0 or NaN); the very same pixels as
+                         ///< the input when there is nobody
+  People people;         ///< as used: detected, or carried forward to this frame
+};
+
+/// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried forward
+/// between detections. Keeps the last mask and joints. Not thread safe.
+class PeopleSegmenter {
+ public:
+  explicit PeopleSegmenter(const SegmentationConfig& config);
+  ~PeopleSegmenter();
+
+  /// `background` is the map rendered at the pose of the previous frame, or null while there is no
+  /// map: what agrees with it is no person. `up_camera` is the upward direction in the camera frame
+  /// when known (TF or configuration).
+  Segmentation segment(const RgbdFrame& frame, const People& people, const ModelView* background,
+                       const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);
+  void reset();
+
+ private:
+  struct State;
+  SegmentationConfig config_;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/core/parallel.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr float kSampleSpacing_m = 0.07F;
+constexpr float kMaxDepthSpread_m = 0.30F;  // of one person's seeds around their median
+constexpr float kTorsoRadius_m = 0.175F;
+constexpr float kHeadRadius_m = 0.12F;
+constexpr float kLegRadius_m = 0.105F;
+constexpr float kArmRadius_m = 0.084F;
+
+struct Limb {
+  Joint from;
+  Joint to;
+  float radius_m;
+};
+
+constexpr std::array<Limb, 18> kLimbs{{
+    {Joint::neck, Joint::right_shoulder, kTorsoRadius_m},
+    {Joint::neck, Joint::left_shoulder, kTorsoRadius_m},
+    {Joint::neck, Joint::right_hip, kTorsoRadius_m},
+    {Joint::neck, Joint::left_hip, kTorsoRadius_m},
+    {Joint::right_hip, Joint::left_hip, kTorsoRadius_m},
+    {Joint::right_shoulder, Joint::right_elbow, kArmRadius_m},
+    {Joint::right_elbow, Joint::right_wrist, kArmRadius_m},
+    {Joint::left_shoulder, Joint::left_elbow, kArmRadius_m},
+    {Joint::left_elbow, Joint::left_wrist, kArmRadius_m},
+    {Joint::right_hip, Joint::right_knee, kLegRadius_m},
+    {Joint::right_knee, Joint::right_ankle, kLegRadius_m},
+    {Joint::left_hip, Joint::left_knee, kLegRadius_m},
+    {Joint::left_knee, Joint::left_ankle, kLegRadius_m},
+    {Joint::neck, Joint::nose, kHeadRadius_m},
+    {Joint::nose, Joint::right_eye, kHeadRadius_m},
+    {Joint::nose, Joint::left_eye, kHeadRadius_m},
+    {Joint::right_eye, Joint::right_ear, kHeadRadius_m},
+    {Joint::left_eye, Joint::left_ear, kHeadRadius_m},
+}};
+
+float jointRadius(int joint) {
+  switch (static_cast<Joint>(joint)) {
+    case Joint::neck:
+    case Joint::right_shoulder:
+    case Joint::left_shoulder:
+    case Joint::right_hip:
+    case Joint::left_hip:
+      return kTorsoRadius_m;
+    case Joint::right_elbow:
+    case Joint::right_wrist:
+    case Joint::left_elbow:
+    case Joint::left_wrist:
+      return kArmRadius_m;
+    case Joint::right_knee:
+    case Joint::right_ankle:
+    case Joint::left_knee:
+    case Joint::left_ankle:
+      return kLegRadius_m;
+    default:
+      return kHeadRadius_m;
+  }
+}
+
+/// A joint or a point of a limb that lies on a cell with depth.
+struct Sample {
+  int cell = -1;
+  float depth_m = 0.0F;
+};
+
+Sample sampleAt(const SceneGrid& grid, float u, float v) {
+  const int cell = grid.cellAt(u, v);
+  if (cell < 0) return {};
+  // 9 x 9 pixels of 640: three cells.
+  return {cell, medianDepth(grid, cell, 1)};
+}
+
+float medianOf(const std::vector<Sample>& samples) {
+  std::vector<float> depths;
+  for (const Sample& sample : samples) {
+    if (sample.depth_m > 0.0F) depths.push_back(sample.depth_m);
+  }
+  if (depths.empty()) return 0.0F;
+  std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
+  return depths[depths.size() / 2];
+}
+
+/// Points along a limb at most kSampleSpacing_m apart, without its ends.
+void sampleLimb(const Keypoint& a, const Keypoint& b, float depth_m, const SceneGrid& grid,
+                std::vector<Sample>& samples) {
+  const float pixel_m = depth_m * grid.spacing / static_cast<float>(grid.step);
+  const float length_m = std::hypot(b.u - a.u, b.v - a.v) * pixel_m;
+  const int parts = std::clamp(static_cast<int>(length_m / kSampleSpacing_m) + 1, 1, 20);
+  for (int i = 1; i < parts; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(parts);
+    samples.push_back(sampleAt(grid, a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)));
+  }
+}
+
+Eigen::Vector3f lift(const Keypoint& joint, float depth_m, const SceneGrid& grid) {
+  // The rays are linear in the pixel: take them from the two corners of the grid.
+  const float step = static_cast<float>(grid.step);
+  const float centre = 0.5F * (step - 1.0F);
+  return {(grid.ray_x[0] + (joint.u - centre) / step * grid.spacing) * depth_m,
+          (grid.ray_y[0] + (joint.v - centre) / step * (grid.ray_y[grid.cols] - grid.ray_y[0])) *
+              depth_m,
+          depth_m};
+}
+
+bool limbIsSeen(const Person& person, const Limb& limb) {
+  return person.joints[static_cast<int>(limb.from)].p > 0.0F &&
+         person.joints[static_cast<int>(limb.to)].p > 0.0F;
+}
+
+void addCapsules(const Person& person, const std::array<float, kJointCount>& depth,
+                 const SceneGrid& grid, Body& body) {
+  std::array<bool, kJointCount> covered{};
+  for (const Limb& limb : kLimbs) {
+    if (!limbIsSeen(person, limb)) continue;
+    const int a = static_cast<int>(limb.from), b = static_cast<int>(limb.to);
+    body.capsules.push_back({lift(person.joints[a], depth[a], grid),
+                             lift(person.joints[b], depth[b], grid), limb.radius_m});
+    covered[a] = covered[b] = true;
+  }
+  for (int j = 0; j < kJointCount; ++j) {
+    if (covered[j] || person.joints[j].p <= 0.0F) continue;
+    const Eigen::Vector3f point = lift(person.joints[j], depth[j], grid);
+    body.capsules.push_back({point, point, jointRadius(j)});
+  }
+}
+
+/// Squared distance of a point to a line between two points.
+struct SegmentDistance {
+  Eigen::Vector3f start, direction;
+  float inverse_length2;
+
+  explicit SegmentDistance(const Capsule& c) : start(c.from), direction(c.to - c.from) {
+    const float length2 = direction.squaredNorm();
+    inverse_length2 = length2 > 1e-8F ? 1.0F / length2 : 0.0F;
+  }
+  float squared(float x, float y, float z) const {
+    const float dx = x - start.x(), dy = y - start.y(), dz = z - start.z();
+    const float t = std::clamp(
+        (dx * direction.x() + dy * direction.y() + dz * direction.z()) * inverse_length2, 0.0F,
+        1.0F);
+    const float ex = dx - t * direction.x(), ey = dy - t * direction.y(),
+                ez = dz - t * direction.z();
+    return ex * ex + ey * ey + ez * ez;
+  }
+};
+
+/// Columns and rows that a capsule with its reach can cover.
+cv::Rect boundsOf(const Capsule& capsule, float reach_m, const SceneGrid& grid) {
+  float left = 1e9F, right = -1e9F, top = 1e9F, bottom = -1e9F;
+  const float step_x = grid.spacing, step_y = grid.ray_y[grid.cols] - grid.ray_y[0];
+  for (const Eigen::Vector3f& p : {capsule.from, capsule.to}) {
+    const float z = std::max(0.2F, p.z() - 0.5F * reach_m);
+    const float col = (p.x() / p.z() - grid.ray_x[0]) / step_x;
+    const float row = (p.y() / p.z() - grid.ray_y[0]) / step_y;
+    left = std::min(left, col - reach_m / z / step_x);
+    right = std::max(right, col + reach_m / z / step_x);
+    top = std::min(top, row - reach_m / z / step_y);
+    bottom = std::max(bottom, row + reach_m / z / step_y);
+  }
+  const auto inside = [](float value, int limit) {
+    return static_cast<int>(std::clamp(value, 0.0F, static_cast<float>(limit)));
+  };
+  const int x0 = inside(left, grid.cols), y0 = inside(top, grid.rows);
+  return {x0, y0, inside(right + 1.0F, grid.cols) - x0, inside(bottom + 1.0F, grid.rows) - y0};
+}
+
+}  // namespace
+
+Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m) {
+  Body body;
+  std::array<Sample, kJointCount> joints;
+  std::vector<Sample> samples;
+  for (int j = 0; j < kJointCount; ++j) {
+    const Keypoint& joint = person.joints[j];
+    if (joint.p <= 0.0F) continue;
+    joints[j] = sampleAt(grid, joint.u, joint.v);
+    samples.push_back(joints[j]);
+  }
+  const float depth_m = near_depth_m > 0.0F ? near_depth_m : medianOf(samples);
+  if (depth_m <= 0.0F) return body;
+  for (const Limb& limb : kLimbs) {
+    if (!limbIsSeen(person, limb)) continue;
+    sampleLimb(person.joints[static_cast<int>(limb.from)],
+               person.joints[static_cast<int>(limb.to)], depth_m, grid, samples);
+  }
+  std::vector<Sample> kept;
+  for (const Sample& sample : samples) {
+    if (sample.depth_m > 0.0F && std::abs(sample.depth_m - depth_m) < kMaxDepthSpread_m &&
+        std::abs(grid.z[sample.cell] - sample.depth_m) < 0.1F) {
+      kept.push_back(sample);
+      body.seeds.push_back(sample.cell);
+    }
+  }
+  body.depth_m = medianOf(kept);
+  if (body.depth_m <= 0.0F) return body;
+  std::array<float, kJointCount> joint_depth;
+  for (int j = 0; j < kJointCount; ++j) {
+    const float z = joints[j].depth_m;
+    joint_depth[j] = std::abs(z - body.depth_m) < kMaxDepthSpread_m ? z : body.depth_m;
+  }
+  addCapsules(person, joint_depth, grid, body);
+  return body;
+}
+
+void measureDistance(const std::vector<Body>& bodies, const SceneGrid& grid, float limit,
+                     BodyDistance& distance) {
+  distance.relative.assign(grid.size(), limit);
+  distance.owner.assign(grid.size(), -1);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const Capsule& capsule : bodies[b].capsules) {
+      const SegmentDistance segment(capsule);
+      const cv::Rect bounds = boundsOf(capsule, limit * capsule.radius_m, grid);
+      const float inverse_radius = 1.0F / capsule.radius_m;
+      parallelFor(std::max(0, bounds.height), 16, [&](std::size_t begin, std::size_t end) {
+        for (int row = bounds.y + static_cast<int>(begin); row < bounds.y + static_cast<int>(end);
+             ++row) {
+          for (int col = bounds.x; col < bounds.x + bounds.width; ++col) {
+            const int cell = row * grid.cols + col;
+            const float z = grid.z[cell] > 0.0F ? grid.z[cell] : bodies[b].depth_m;
+            const float relative =
+                std::sqrt(segment.squared(grid.ray_x[cell] * z, grid.ray_y[cell] * z, z)) *
+                inverse_radius;
+            if (relative >= distance.relative[cell]) continue;
+            distance.relative[cell] = relative;
+            distance.owner[cell] = static_cast<std::int16_t>(b);
+          }
+        }
+      });
+    }
+  }
+}
+
+}  // namespace posefusion

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/cut_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace posefusion {
+namespace {
+
+struct Neighbour {
+  int right, down;
+  float factor;  // a diagonal edge stands for less of the border's length
+};
+constexpr std::array<Neighbour, 4> kNeighbours{
+    {{1, 0, 1.0F}, {0, 1, 1.0F}, {1, 1, 0.707F}, {-1, 1, 0.707F}}};
+
+constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
+constexpr float kColourSpread = 900.0F;  // square of a difference that makes an edge cheap
+
+float distanceBetween(const SceneGrid& grid, int a, int b) {
+  const float dx = grid.x[a] - grid.x[b], dy = grid.y[a] - grid.y[b], dz = grid.z[a] - grid.z[b];
+  return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
+
+float colourDifference2(const SceneGrid& grid, int a, int b) {
+  const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
+  const cv::Vec3b& q = grid.color.ptr<cv::Vec3b>()[b];
+  float sum = 0.0F;
+  for (int k = 0; k < 3; ++k) {
+    const float difference = static_cast<float>(p[k]) - static_cast<float>(q[k]);
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// Cells at -kCertain with no chance stay out of the graph: they only pull on their neighbours.
+template <typename Weight>
+void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& weight,
+                       std::vector<std::uint8_t>& labels) {
+  labels.assign(grid.size(), 0);
+  node_.assign(grid.size(), -1);
+  const auto inGraph = [&](int cell) { return unary[cell] > -kCertain; };
+  int nodes = 0;
+  for (int cell = 0; cell < grid.size(); ++cell) nodes += inGraph(cell);
+  graph_.begin(nodes, 4 * nodes);
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    if (!inGraph(cell)) continue;
+    float outside = 0.0F;
+    const int row = cell / grid.cols, col = cell % grid.cols;
+    for (const Neighbour& n : kNeighbours) {
+      for (int sign : {-1, 1}) {
+        const int r = row + sign * n.down, c = col + sign * n.right;
+        if (r < 0 || c < 0 || r >= grid.rows || c >= grid.cols) continue;
+        const int other = r * grid.cols + c;
+        if (!inGraph(other)) outside += n.factor * weight(cell, other);
+      }
+    }
+    node_[cell] = graph_.addNode(std::max(0.0F, unary[cell]), std::max(0.0F, -unary[cell]) + outside);
+  }
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    if (node_[cell] < 0) continue;
+    const int row = cell / grid.cols, col = cell % grid.cols;
+    for (const Neighbour& n : kNeighbours) {
+      const int r = row + n.down, c = col + n.right;
+      if (r >= grid.rows || c < 0 || c >= grid.cols) continue;
+      const int other = r * grid.cols + c;
+      if (node_[other] >= 0) graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
+    }
+  }
+  graph_.solve();
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    labels[cell] = node_[cell] >= 0 && graph_.isPerson(node_[cell]);
+  }
+}
+
+void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const SegmentationConfig& config,
+                     std::vector<std::uint8_t>& labels) {
+  const float smoothness = static_cast<float>(config.smoothness);
+  const float sigma_m = static_cast<float>(config.sigma_m);
+  const auto weight = [&](int a, int b) {
+    const float contrast = std::exp(-colourDifference2(grid, a, b) / kColourSpread);
+    const float blended = smoothness * (0.4F + 0.6F * contrast);
+    if (!grid.hasDepth(a) || !grid.hasDepth(b)) return kHoleEdge * blended;
+    // Neighbours are farther apart on far surfaces.
+    const float reach = std::max(sigma_m, 2.5F * grid.spacing * grid.z[a]);
+    return blended * smoothnessCost(distanceBetween(grid, a, b), reach);
+  };
+  solve(grid, unary, weight, labels);
+}
+
+void GridCutter::cutPaper(const SceneGrid& grid, const std::vector<Body>& bodies,
+                          const Eigen::Vector3f& up, const SegmentationConfig& config,
+                          std::vector<std::uint8_t>& labels) {
+  std::vector<Eigen::Vector3f> seeds;
+  std::vector<int> seed_cells;
+  for (const Body& body : bodies) {
+    for (int cell : body.seeds) {
+      seeds.emplace_back(grid.x[cell], grid.y[cell], grid.z[cell]);
+      seed_cells.push_back(cell);
+    }
+  }
+  paper_unary_.assign(grid.size(), -kCertain);
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    if (!grid.hasDepth(cell)) continue;
+    const Eigen::Vector3f point(grid.x[cell], grid.y[cell], grid.z[cell]);
+    paper_unary_[cell] =
+        paperUnary(point, seeds, up, static_cast<float>(config.paper_radius_m));
+  }
+  for (int cell : seed_cells) paper_unary_[cell] = kCertain;
+  const float sigma_m = static_cast<float>(config.paper_sigma_m);
+  const auto weight = [&](int a, int b) {
+    if (!grid.hasDepth(a) || !grid.hasDepth(b)) return 0.0F;
+    return smoothnessCost(distanceBetween(grid, a, b), sigma_m);
+  };
+  solve(grid, paper_unary_, weight, labels);
+}
+
+void keepAnchoredRegions(const SceneGrid& grid, const std::vector<Body>& bodies,
+                          std::vector<std::uint8_t>& labels) {
+  std::vector<int> open;
+  std::vector<std::uint8_t> reached(labels.size(), 0);
+  for (const Body& body : bodies) {
+    for (int anchor : body.anchors) {
+      if (labels[anchor] == 0 || reached[anchor] != 0) continue;
+      reached[anchor] = 1;
+      open.push_back(anchor);
+    }
+  }
+  while (!open.empty()) {
+    const int cell = open.back();
+    open.pop_back();
+    const int row = cell / grid.cols, col = cell % grid.cols;
+    for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
+      for (int c = std::max(0, col - 1); c <= std::min(grid.cols - 1, col + 1); ++c) {
+        const int other = r * grid.cols + c;
+        if (labels[other] == 0 || reached[other] != 0) continue;
+        reached[other] = 1;
+        open.push_back(other);
+      }
+    }
+  }
+  labels.swap(reached);
+}
+
+}  // namespace posefusion

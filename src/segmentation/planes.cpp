@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/planes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace posefusion {
+namespace {
+
+constexpr int kPatch = 8;                // cells along the side of a patch
+constexpr float kTolerance = 0.006F;     // of inverse depth, 1/m: 2.4 cm at 2 m
+constexpr float kMaxPatchError = 0.004F;  // rms of a patch's own fit, 1/m
+constexpr int kMinPatches = 12;
+constexpr double kMinArea_m2 = 0.35;     // as seen face on: more than a back
+
+/// Sums from which a plane is fitted to inverse depths at (u, v), least squares.
+struct Moments {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double square = 0;
+  double count = 0;
+
+  void add(double u, double v, double w) {
+    const Eigen::Vector3d q(u, v, 1.0);
+    A += q * q.transpose();
+    b += q * w;
+    square += w * w;
+    count += 1;
+  }
+  Moments& operator+=(const Moments& other) {
+    A += other.A;
+    b += other.b;
+    square += other.square;
+    count += other.count;
+    return *this;
+  }
+  Eigen::Vector3d plane() const { return A.ldlt().solve(b); }
+  double rms(const Eigen::Vector3d& p) const {
+    return std::sqrt(std::max(0.0, (square - 2 * p.dot(b) + p.dot(A * p)) / count));
+  }
+};
+
+struct Patch {
+  Moments moments;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< u, v, 1
+  double inverse_depth = 0;
+  double error = 1e9;
+};
+
+}  // namespace
+
+struct PlaneFinder::State {
+  int cols = 0, rows = 0;  ///< of patches
+  std::vector<Patch> patches;
+  std::vector<float> inverse_depth;  ///< of cells, 0 = none
+  std::vector<int> order;            ///< patches, flattest first
+  std::vector<std::uint8_t> taken;   ///< patches that belong to a region
+  std::vector<int> members;          ///< patches of the region that grows
+  Eigen::Vector3d plane;             ///< its plane
+
+  void fitPatches(const SceneGrid& grid);
+  void fitPatch(const SceneGrid& grid, int index);
+  void growRegion(int start);
+  bool isLarge(const SceneGrid& grid) const;
+  void mark(const SceneGrid& grid, int index, std::vector<std::uint8_t>& on_plane) const;
+};
+
+PlaneFinder::PlaneFinder() : state_(std::make_unique<State>()) {}
+PlaneFinder::~PlaneFinder() = default;
+
+void PlaneFinder::State::fitPatch(const SceneGrid& grid, int index) {
+  Patch& patch = patches[index];
+  const int u0 = index % cols * kPatch, v0 = index / cols * kPatch;
+  for (int v = v0; v < v0 + kPatch; ++v) {
+    for (int u = u0; u < u0 + kPatch; ++u) {
+      const float w = inverse_depth[v * grid.cols + u];
+      if (w > 0.0F) patch.moments.add(u, v, w);
+    }
+  }
+  if (patch.moments.count < 0.7 * kPatch * kPatch) return;
+  const Eigen::Vector3d fit = patch.moments.plane();
+  patch.centre = {u0 + 0.5 * (kPatch - 1), v0 + 0.5 * (kPatch - 1), 1.0};
+  patch.inverse_depth = fit.dot(patch.centre);
+  patch.error = patch.moments.rms(fit);
+}
+
+void PlaneFinder::State::fitPatches(const SceneGrid& grid) {
+  cols = grid.cols / kPatch;
+  rows = grid.rows / kPatch;
+  inverse_depth.resize(grid.size());
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    inverse_depth[cell] = grid.hasDepth(cell) ? 1.0F / grid.z[cell] : 0.0F;
+  }
+  patches.assign(cols * rows, Patch());
+  for (int index = 0; index < cols * rows; ++index) fitPatch(grid, index);
+  order.resize(patches.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [this](int a, int b) {
+    return std::make_pair(patches[a].error, a) < std::make_pair(patches[b].error, b);
+  });
+  taken.assign(patches.size(), 0);
+}
+
+void PlaneFinder::State::growRegion(int start) {
+  members.assign(1, start);
+  taken[start] = 1;
+  Moments sum = patches[start].moments;
+  plane = sum.plane();
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    for (const auto& [right, down] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int col = members[next] % cols + right, row = members[next] / cols + down;
+      if (col < 0 || row < 0 || col >= cols || row >= rows) continue;
+      const int index = row * cols + col;
+      const Patch& patch = patches[index];
+      if (taken[index] != 0 || patch.error > kMaxPatchError) continue;
+      if (std::abs(plane.dot(patch.centre) - patch.inverse_depth) > kTolerance) continue;
+      taken[index] = 1;
+      members.push_back(index);
+      sum += patch.moments;
+      plane = sum.plane();
+    }
+  }
+}
+
+bool PlaneFinder::State::isLarge(const SceneGrid& grid) const {
+  if (static_cast<int>(members.size()) < kMinPatches) return false;
+  double area_m2 = 0;
+  for (int index : members) {
+    const double side_m = kPatch * grid.spacing / std::max(0.05, patches[index].inverse_depth);
+    area_m2 += side_m * side_m;
+  }
+  return area_m2 > kMinArea_m2;
+}
+
+/// Marks the cells of the plane in a patch and in the ring around it: the border patches of a region
+/// mix two surfaces and did not join.
+void PlaneFinder::State::mark(const SceneGrid& grid, int index,
+                              std::vector<std::uint8_t>& on_plane) const {
+  const int u0 = std::max(0, (index % cols - 1) * kPatch);
+  const int v0 = std::max(0, (index / cols - 1) * kPatch);
+  const int u1 = std::min(grid.cols, (index % cols + 2) * kPatch);
+  const int v1 = std::min(grid.rows, (index / cols + 2) * kPatch);
+  for (int v = v0; v < v1; ++v) {
+    for (int u = u0; u < u1; ++u) {
+      const int cell = v * grid.cols + u;
+      const double predicted = plane.x() * u + plane.y() * v + plane.z();
+      if (inverse_depth[cell] > 0.0F && std::abs(predicted - inverse_depth[cell]) < kTolerance) {
+        on_plane[cell] = 1;
+      }
+    }
+  }
+}
+
+void PlaneFinder::find(const SceneGrid& grid, std::vector<std::uint8_t>& on_plane) {
+  State& s = *state_;
+  on_plane.assign(grid.size(), 0);
+  s.fitPatches(grid);
+  for (int start : s.order) {
+    if (s.taken[start] != 0 || s.patches[start].error > kMaxPatchError) continue;
+    s.growRegion(start);
+    if (!s.isLarge(grid)) continue;
+    for (int index : s.members) s.mark(grid, index, on_plane);
+  }
+}
+
+}  // namespace posefusion
