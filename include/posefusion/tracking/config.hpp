@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "posefusion/core/fields.hpp"
+
+namespace posefusion {
+
+/// Settings of frame-to-model tracking.
+struct TrackingConfig {
+  double min_depth_m = 0.3;
+  double max_depth_m = 5.0;
+  int shrink = 2;
+  double max_distance_m = 0.10;
+  double max_normal_angle_rad = 0.7;
+  double photometric_sigma = 12.0;
+  bool rotation_prealignment = true;
+  int max_iterations = 12;
+  double min_valid_fraction = 0.03;
+  double min_inlier_fraction = 0.4;
+  double max_translation_m = 0.30;
+  double max_rotation_rad = 0.60;
+  int lost_after_frames = 5;
+};
+
+inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
+  v.number("min_depth_m", c.min_depth_m, 0.01, 100.0, "nearer depth is not used");
+  v.number("max_depth_m", c.max_depth_m, 0.1, 100.0, "farther depth is not used");
+  v.integer("shrink", c.shrink, 1, 8,
+            "tracking and map work on images shrunk by this factor; every pixel still counts, each "
+            "shrunk pixel is the mean of its block");
+  v.number("max_distance_m", c.max_distance_m, 1e-3, 10.0, "largest distance of a matched pair");
+  v.number("max_normal_angle_rad", c.max_normal_angle_rad, 0.01, 3.14,
+           "largest angle between the normals of a matched pair");
+  v.number("photometric_sigma", c.photometric_sigma, 0.0, 1000.0,
+           "standard deviation of a grey level; 0 = geometry only");
+  v.flag("rotation_prealignment", c.rotation_prealignment,
+         "align small images by rotation alone first");
+  v.integer("max_iterations", c.max_iterations, 1, 1000, "Gauss-Newton steps on each level");
+  v.number("min_valid_fraction", c.min_valid_fraction, 0.0, 1.0,
+           "least part of the image that must have depth and model");
+  v.number("min_inlier_fraction", c.min_inlier_fraction, 0.0, 1.0,
+           "least part of those that must agree");
+  v.number("max_translation_m", c.max_translation_m, 0.0, 100.0,
+           "a longer step between two frames is not believed");
+  v.number("max_rotation_rad", c.max_rotation_rad, 0.0, 3.15,
+           "a larger turn between two frames is not believed");
+  v.integer("lost_after_frames", c.lost_after_frames, 1, 1000,
+            "untrusted frames in a row until tracking counts as lost");
+}
+
+}  // namespace posefusion

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/tracking/normal_equations.hpp"
+
+#include <algorithm>
+
+#include "normal_equations_kernel.hpp"
+#include "posefusion/core/parallel.hpp"
+
+namespace posefusion {
+namespace {
+
+// In groups of lanes: 1024 points a task, whose float sums stay exact enough.
+constexpr std::size_t kGroupGrain = 64;
+
+struct Sums {
+  double value[kernel::kSums] = {};
+  Sums& operator+=(const Sums& other) {
+    for (int k = 0; k < kernel::kSums; ++k) value[k] += other.value[k];
+    return *this;
+  }
+};
+
+kernel::Image toKernel(const FrameLevel& frame) {
+  kernel::Image image;
+  image.depth = frame.depth_m.ptr<float>();
+  image.nx = frame.normal_x.ptr<float>();
+  image.ny = frame.normal_y.ptr<float>();
+  image.nz = frame.normal_z.ptr<float>();
+  image.intensity = frame.intensity.ptr<float>();
+  image.width = frame.camera.width;
+  image.height = frame.camera.height;
+  image.fx = static_cast<float>(frame.camera.fx);
+  image.fy = static_cast<float>(frame.camera.fy);
+  image.cx = static_cast<float>(frame.camera.cx);
+  image.cy = static_cast<float>(frame.camera.cy);
+  return image;
+}
+
+kernel::Motion toKernel(const Eigen::Isometry3d& T) {
+  kernel::Motion motion;
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) motion.r[3 * row + col] = static_cast<float>(T(row, col));
+    motion.t[row] = static_cast<float>(T(row, 3));
+  }
+  return motion;
+}
+
+}  // namespace
+
+NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel& frame,
+                                     const Eigen::Isometry3d& T_frame_model,
+                                     const TermSettings& settings) {
+  const kernel::Points points = {model.x.data(),         model.y.data(),     model.z.data(),
+                                 model.nx.data(),        model.ny.data(),    model.nz.data(),
+                                 model.intensity.data(), model.weight.data()};
+  const kernel::Image image = toKernel(frame);
+  const kernel::Motion motion = toKernel(T_frame_model);
+  const kernel::Gates gates = {
+      settings.max_distance_m, settings.min_normal_cosine, settings.robust_scale,
+      settings.photometric_sigma > 0 ? 1.0F / settings.photometric_sigma : 0.0F,
+      settings.brightness_offset};
+  constexpr std::size_t lanes = ModelPoints::kLanes;
+  const std::size_t groups = (model.count + lanes - 1) / lanes;
+  const Sums sums =
+      deterministicSum<Sums>(groups, kGroupGrain, [&](std::size_t begin, std::size_t end) {
+        Sums part;
+        kernel::accumulate(points, image, motion, gates, begin * lanes, end * lanes, part.value);
+        return part;
+      });
+  NormalEquations out;
+  std::copy_n(sums.value, 21, out.H);
+  std::copy_n(sums.value + 21, 6, out.g);
+  out.geometric_error = sums.value[27];
+  out.photometric_error = sums.value[28];
+  out.photometric_sum = sums.value[29];
+  out.photometric_weight = sums.value[30];
+  out.robust_error = sums.value[31];
+  out.candidates = sums.value[32];
+  out.inliers = sums.value[33];
+  out.photometric_inliers = sums.value[34];
+  return out;
+}
+
+Matrix6d NormalEquations::hessian() const {
+  Matrix6d full;
+  int k = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int col = row; col < 6; ++col, ++k) full(row, col) = full(col, row) = H[k];
+  }
+  return full;
+}
+
+Vector6d NormalEquations::gradient() const { return Eigen::Map<const Vector6d>(g); }
+
+}  // namespace posefusion

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "normal_equations_kernel.hpp"
+
+#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/parallel.hpp"
+
+namespace posefusion::kernel {
+namespace {
+
+constexpr int kLanes = 16;
+
+// A pair agrees when its distance can be explained by noise. Pairs further apart still pull, weakly.
+constexpr float kInlierSigmas = 3.0F;
+
+#define POSEFUSION_INLINE inline __attribute__((always_inline))
+#define FOR_LANES for (int l = 0; l < kLanes; ++l)
+
+/// A group of model points in the frame's camera, and the pixels they fall on.
+struct Group {
+  float x[kLanes], y[kLanes], z[kLanes];
+  float nx[kLanes], ny[kLanes], nz[kLanes];
+  float u[kLanes], v[kLanes], inverse_z[kLanes];
+  float inside[kLanes];  ///< 1 where all four neighbours are in the image
+  int nearest[kLanes], corner[kLanes];
+};
+
+/// Adds w * J'J, w * J'r for J = [a, q x a].
+POSEFUSION_INLINE void addTerm(const Group& q, const float* ax, const float* ay, const float* az,
+                               const float* weight, const float* residual,
+                               float (&sums)[kSums][kLanes]) {
+  float j[6][kLanes];
+  FOR_LANES {
+    j[0][l] = ax[l];
+    j[1][l] = ay[l];
+    j[2][l] = az[l];
+    j[3][l] = q.y[l] * az[l] - q.z[l] * ay[l];
+    j[4][l] = q.z[l] * ax[l] - q.x[l] * az[l];
+    j[5][l] = q.x[l] * ay[l] - q.y[l] * ax[l];
+  }
+  int k = 0;
+  for (int row = 0; row < 6; ++row) {
+    float weighted[kLanes];
+    FOR_LANES weighted[l] = weight[l] * j[row][l];
+    for (int col = row; col < 6; ++col, ++k) {
+      FOR_LANES sums[k][l] += weighted[l] * j[col][l];
+    }
+    FOR_LANES sums[21 + row][l] += weighted[l] * residual[l];
+  }
+}
+
+POSEFUSION_INLINE void project(const Points& p, const Image& image, const Motion& m, std::size_t i,
+                               Group& q) {
+  FOR_LANES {
+    const float x = p.x[i + l], y = p.y[i + l], z = p.z[i + l];
+    const float a = p.nx[i + l], b = p.ny[i + l], c = p.nz[i + l];
+    q.x[l] = m.r[0] * x + m.r[1] * y + m.r[2] * z + m.t[0];
+    q.y[l] = m.r[3] * x + m.r[4] * y + m.r[5] * z + m.t[1];
+    q.z[l] = m.r[6] * x + m.r[7] * y + m.r[8] * z + m.t[2];
+    q.nx[l] = m.r[0] * a + m.r[1] * b + m.r[2] * c;
+    q.ny[l] = m.r[3] * a + m.r[4] * b + m.r[5] * c;
+    q.nz[l] = m.r[6] * a + m.r[7] * b + m.r[8] * c;
+  }
+  const auto max_u = static_cast<float>(image.width - 1);
+  const auto max_v = static_cast<float>(image.height - 1);
+  FOR_LANES {
+    const float z = q.z[l] > 0.05F ? q.z[l] : 1.0F;
+    q.inverse_z[l] = 1.0F / z;
+    const float u = image.fx * q.x[l] * q.inverse_z[l] + image.cx;
+    const float v = image.fy * q.y[l] * q.inverse_z[l] + image.cy;
+    const bool inside = q.z[l] > 0.05F && u >= 0 && v >= 0 && u < max_u && v < max_v;
+    q.inside[l] = inside ? 1.0F : 0.0F;
+    q.u[l] = inside ? u : 0.0F;
+    q.v[l] = inside ? v : 0.0F;
+    q.corner[l] = static_cast<int>(q.v[l]) * image.width + static_cast<int>(q.u[l]);
+    q.nearest[l] = static_cast<int>(q.v[l] + 0.5F) * image.width + static_cast<int>(q.u[l] + 0.5F);
+  }
+}
+
+/// Point to plane. Leaves 1 in `near` where the frame's surface is close to the model's.
+POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group& q,
+                                     const Image& image, const Gates& gates, float (&near)[kLanes],
+                                     float (&sums)[kSums][kLanes]) {
+  float weight[kLanes], residual[kLanes];
+  const float inverse_fx = 1.0F / image.fx, inverse_fy = 1.0F / image.fy;
+  const float inverse_scale2 = 1.0F / (gates.robust_scale * gates.robust_scale);
+  FOR_LANES {
+    const int at = q.nearest[l];
+    const float depth = image.depth[at];
+    const float fx = image.nx[at], fy = image.ny[at], fz = image.nz[at];
+    // Nearest pixel, so the frame's point is that pixel's own ray.
+    const float pu = static_cast<float>(static_cast<int>(q.u[l] + 0.5F));
+    const float pv = static_cast<float>(static_cast<int>(q.v[l] + 0.5F));
+    const float px = (pu - image.cx) * inverse_fx * depth;
+    const float py = (pv - image.cy) * inverse_fy * depth;
+    const float dx = q.x[l] - px, dy = q.y[l] - py, dz = q.z[l] - depth;
+    const float r = q.nx[l] * dx + q.ny[l] * dy + q.nz[l] * dz;
+    const float distance2 = dx * dx + dy * dy + dz * dz;
+    const float cosine = q.nx[l] * fx + q.ny[l] * fy + q.nz[l] * fz;
+    const float candidate = depth > 0 ? q.inside[l] : 0.0F;
+    near[l] = distance2 < gates.max_distance * gates.max_distance ? candidate : 0.0F;
+    const float inlier = cosine > gates.min_cosine ? near[l] : 0.0F;
+    const float sigma = depthSigma(depth);
+    const float x2 = r * r / (sigma * sigma);
+    const float root = 1.0F / (1.0F + x2 * inverse_scale2);
+    weight[l] = inlier * root * root * p.weight[i + l] / (sigma * sigma);
+    residual[l] = r;
+    const float agrees = x2 < kInlierSigmas * kInlierSigmas ? inlier : 0.0F;
+    sums[27][l] += agrees * r * r;
+    sums[31][l] += weight[l] * r * r;
+    sums[32][l] += candidate;
+    sums[33][l] += agrees;
+  }
+  addTerm(q, q.nx, q.ny, q.nz, weight, residual, sums);
+}
+
+POSEFUSION_INLINE void photometricTerm(const Points& p, std::size_t i, const Group& q,
+                                       const Image& image, const Gates& gates,
+                                       const float (&near)[kLanes], float (&sums)[kSums][kLanes]) {
+  float ax[kLanes], ay[kLanes], az[kLanes], weight[kLanes], residual[kLanes];
+  FOR_LANES {
+    const float* at = image.intensity + q.corner[l];
+    const float i00 = at[0], i01 = at[1], i10 = at[image.width], i11 = at[image.width + 1];
+    const float du = q.u[l] - static_cast<float>(static_cast<int>(q.u[l]));
+    const float dv = q.v[l] - static_cast<float>(static_cast<int>(q.v[l]));
+    const float top = i00 + du * (i01 - i00), bottom = i10 + du * (i11 - i10);
+    const float gu = (1 - dv) * (i01 - i00) + dv * (i11 - i10);
+    const float gv = bottom - top;
+    const float r = top + dv * gv - (p.intensity[i + l] + gates.brightness_offset);
+    const float gx = gu * image.fx * q.inverse_z[l], gy = gv * image.fy * q.inverse_z[l];
+    ax[l] = gx;
+    ay[l] = gy;
+    az[l] = -(gx * q.x[l] + gy * q.y[l]) * q.inverse_z[l];
+    const float s = gates.inverse_photometric_sigma;
+    const float x2 = r * r * s * s;
+    const float root = 1.0F / (1.0F + x2 * (1.0F / 9.0F));
+    const float robust = near[l] * root * root * p.weight[i + l];
+    weight[l] = robust * s * s;
+    residual[l] = r;
+    sums[28][l] += near[l] * r * r;
+    sums[29][l] += robust * r;
+    sums[30][l] += robust;
+    sums[31][l] += weight[l] * r * r;
+    sums[34][l] += near[l];
+  }
+  addTerm(q, ax, ay, az, weight, residual, sums);
+}
+
+}  // namespace
+
+POSEFUSION_SIMD_CLONES
+void accumulate(const Points& points, const Image& image, const Motion& motion, const Gates& gates,
+                std::size_t begin, std::size_t end, double* sums) {
+  float lanes[kSums][kLanes] = {};
+  for (std::size_t i = begin; i < end; i += kLanes) {
+    Group q;
+    float near[kLanes];
+    project(points, image, motion, i, q);
+    geometricTerm(points, i, q, image, gates, near, lanes);
+    if (gates.inverse_photometric_sigma > 0) {
+      photometricTerm(points, i, q, image, gates, near, lanes);
+    }
+  }
+  for (int k = 0; k < kSums; ++k) {
+    FOR_LANES sums[k] += static_cast<double>(lanes[k][l]);
+  }
+}
+
+}  // namespace posefusion::kernel
