@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "posefusion/core/camera.hpp"
+
+namespace posefusion {
+
+/// A camera as users keep it in a file.
+struct CameraFile {
+  PinholeCamera camera;
+  std::optional<double> depth_factor;  ///< steps of a 16-bit depth in a metre: 1000, TUM 5000
+};
+
+/// Reads YAML with plain keys (`width height fx fy cx cy k1 k2 p1 p2 k3 depth_factor`), with those
+/// of ORB-SLAM (`Camera.fx`, `DepthMapFactor`), of OpenCV or of ROS's camera_calibration
+/// (`image_width`, `camera_matrix`, `distortion_coefficients`). Throws InputError naming the file
+/// and the key.
+CameraFile loadCamera(const std::string& path);
+
+/// Writes plain keys. Throws InputError naming the file.
+void saveCamera(const std::string& path, const CameraFile& file);
+
+}  // namespace posefusion

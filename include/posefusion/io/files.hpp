@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace posefusion {
+
+/// A file that appears under its name only when it is whole: written beside it under a temporary
+/// name, renamed by commit(). Without commit() nothing is left behind.
+class AtomicFile {
+ public:
+  /// Throws InputError naming the file when it cannot be made.
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+
+  /// Throws InputError naming the file when something could not be written (disk full).
+  void commit();
+
+ private:
+  std::string path_;
+  std::string temporary_;
+  std::ofstream stream_;
+};
+
+/// The whole of a text file. Throws InputError naming it.
+std::string readFile(const std::string& path);
+
+/// Makes the folder and those above it. Throws InputError naming it when that fails, or when
+/// nothing can be written into it.
+void makeFolder(const std::string& path);
+
+}  // namespace posefusion

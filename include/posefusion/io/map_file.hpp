@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "posefusion/map/surfel_map.hpp"
+
+namespace posefusion {
+
+/// Writes the stable surfels, in the order in which they were made, as binary little-endian PLY:
+/// float x y z nx ny nz (map frame, metres), uchar red green blue, float radius confidence. Returns
+/// their number. Throws InputError naming the file.
+std::size_t saveMap(const std::string& path, const SurfelMap& map);
+
+/// Reads what saveMap() writes; weights are the confidences. Throws InputError naming the file.
+SurfelArrays loadMap(const std::string& path);
+
+}  // namespace posefusion

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/files.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "posefusion/core/error.hpp"
+
+namespace posefusion {
+namespace {
+
+std::string reason() { return errno != 0 ? std::strerror(errno) : "unknown reason"; }
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path)
+    // The process in the name keeps two runs into one folder from mixing their bytes.
+    : path_(path), temporary_(path + ".part" + std::to_string(getpid())) {
+  errno = 0;
+  stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+  if (!stream_) throw InputError(path_ + ": cannot be written: " + reason());
+}
+
+AtomicFile::~AtomicFile() {
+  if (temporary_.empty()) return;
+  stream_.close();
+  std::remove(temporary_.c_str());
+}
+
+void AtomicFile::commit() {
+  errno = 0;
+  stream_.close();
+  if (!stream_) throw InputError(path_ + ": cannot be written: " + reason());
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    throw InputError(path_ + ": cannot be replaced: " + reason());
+  }
+  temporary_.clear();
+}
+
+std::string readFile(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path + ": is a folder, expected a file");
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened: " + reason());
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void makeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw InputError(path + ": the folder cannot be made: " + error.message());
+  if (!std::filesystem::is_directory(path)) throw InputError(path + ": is no folder");
+  if (access(path.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(path + ": the folder cannot be written into: " + reason());
+  }
+}
+
+}  // namespace posefusion

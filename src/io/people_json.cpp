@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/people_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/io/files.hpp"
+
+namespace posefusion {
+namespace {
+
+using nlohmann::json;
+
+Keypoint parseJoint(const json& entry) {
+  if (!entry.is_array() || entry.size() != 3) throw InputError("a joint is not [u, v, p]");
+  Keypoint joint{entry[0].get<float>(), entry[1].get<float>(), entry[2].get<float>()};
+  if (!(joint.p >= 0.0F && joint.p <= 1.0F)) {
+    throw InputError("p of a joint is " + entry[2].dump() + ", expected 0 to 1");
+  }
+  return joint;
+}
+
+Person parsePerson(const json& entry) {
+  const json& joints = entry.at("joints");
+  if (joints.size() != kJointCount) {
+    throw InputError("a person has " + std::to_string(joints.size()) + " joints, expected 18");
+  }
+  Person person;
+  person.score = entry.value("score", 1.0F);
+  std::transform(joints.begin(), joints.end(), person.joints.begin(), parseJoint);
+  return person;
+}
+
+People parseFrame(const json& entry) {
+  People people;
+  people.detected = true;
+  people.stamp_ns = parseStamp(entry.at("stamp").get<std::string>());
+  for (const json& person : entry.at("people")) people.people.push_back(parsePerson(person));
+  return people;
+}
+
+void checkJointNames(const json& root) {
+  if (!root.contains("joints")) return;
+  const json& names = root["joints"];
+  const bool same = names.size() == kJointNames.size() &&
+                    std::equal(kJointNames.begin(), kJointNames.end(), names.begin(),
+                               [](auto name, const json& found) { return found == name; });
+  if (!same) throw InputError("joints are not those of COCO-18 in OpenPose's order");
+}
+
+/// The shortest text that reads back as the same number.
+std::string text(float value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string toJson(const Person& person) {
+  std::string out = "{\"score\": " + text(person.score) + ", \"joints\": [";
+  for (std::size_t i = 0; i < person.joints.size(); ++i) {
+    const Keypoint& joint = person.joints[i];
+    out +=
+        (i > 0 ? ", [" : "[") + text(joint.u) + ", " + text(joint.v) + ", " + text(joint.p) + "]";
+  }
+  return out + "]}";
+}
+
+}  // namespace
+
+RecordedPeople loadPeople(const std::string& path) {
+  RecordedPeople recorded;
+  std::size_t index = 0;
+  try {
+    const json root = json::parse(readFile(path));
+    checkJointNames(root);
+    for (const json& entry : root.at("frames")) {
+      const People people = parseFrame(entry);
+      recorded[people.stamp_ns] = people;
+      ++index;
+    }
+  } catch (const json::parse_error& error) {
+    throw InputError(path + ": is no JSON: " + error.what());
+  } catch (const json::exception& error) {
+    throw InputError(path + ": frame " + std::to_string(index) + ": " + error.what());
+  } catch (const InputError& error) {
+    if (std::string(error.what()).rfind(path, 0) == 0) throw;
+    throw InputError(path + ": frame " + std::to_string(index) + ": " + error.what());
+  }
+  return recorded;
+}
+
+void savePeople(const std::string& path, const std::vector<People>& frames) {
+  AtomicFile file(path);
+  json names = json::array();
+  for (const auto name : kJointNames) names.push_back(std::string(name));
+  // A line for each frame: large files stay readable and diffable.
+  file.stream() << "{\"joints\": " << names.dump() << ",\n \"frames\": [";
+  const char* separator = "\n";
+  for (const People& frame : frames) {
+    if (!frame.detected) continue;
+    file.stream() << separator << "  {\"stamp\": \"" << formatStamp(frame.stamp_ns)
+                  << "\", \"people\": [";
+    for (std::size_t i = 0; i < frame.people.size(); ++i) {
+      file.stream() << (i > 0 ? ", " : "") << toJson(frame.people[i]);
+    }
+    file.stream() << "]}";
+    separator = ",\n";
+  }
+  file.stream() << "\n ]}\n";
+  file.commit();
+}
+
+}  // namespace posefusion
