@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "posefusion/simulator/raycaster.hpp"
+#include "posefusion/simulator/world.hpp"
+
+namespace posefusion::simulator {
+
+/// Light that comes in at a point of the air from the six directions +x -x +y -y +z -z, as the
+/// radiance of a white surface that faces there, lamps left out.
+using AmbientCube = std::array<Eigen::Vector3f, 6>;
+
+/// Light at the vertices of the static world: direct light of each lamp with soft shadows, and
+/// what the surfaces throw at each other (radiosity gathered with rays, two bounces). Worked out
+/// once. People take light away from the vertices near them, frame by frame.
+class Lighting {
+ public:
+  Lighting(const World& world, const RayCaster& caster);
+
+  /// Light on a white surface at each vertex, as radiance.
+  const std::vector<Eigen::Vector3f>& atVertices() const { return light_; }
+
+  /// Takes the people's shadows of the last call away and casts those of people who stand at the
+  /// given places of the floor (world, metres). The caster must hold their shapes.
+  void castShadows(const std::vector<Eigen::Vector2f>& people);
+
+  /// Light for a point in the air: lamps with shadows, then the rest by the nearest cubes.
+  Eigen::Vector3f at(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
+                     float openness) const;
+
+ private:
+  void gatherDirect();
+  void gatherIndirect(int bounce);
+  void smoothPatches(std::vector<Eigen::Vector3f>& light) const;
+  void fillCubes();
+  AmbientCube cubeAt(const Eigen::Vector3f& position) const;
+  Eigen::Vector3f reflected(const RTCRayHit& hit) const;
+  void shade(std::size_t vertex);
+
+  const World& world_;
+  const RayCaster& caster_;
+  std::vector<float> direct_;  ///< [vertex][lamp], radiance of a white surface for a unit lamp
+  std::vector<Eigen::Vector3f> indirect_;
+  std::vector<Eigen::Vector3f> base_;   ///< light without people
+  std::vector<Eigen::Vector3f> light_;  ///< light with people
+  std::vector<std::uint32_t> shaded_;   ///< vertices that people changed
+  Eigen::Vector3f cubes_from_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3i cubes_ = Eigen::Vector3i::Zero();
+  std::vector<AmbientCube> cube_;
+};
+
+/// Radiance of a white surface at `position` facing `normal` lit by a unit lamp, shadows left out.
+float lampFactor(const AreaLight& lamp, const Eigen::Vector3f& on_lamp,
+                 const Eigen::Vector3f& position, const Eigen::Vector3f& normal);
+
+/// The i-th of 16 points spread over a lamp, turned by `turn`.
+Eigen::Vector3f lampPoint(const AreaLight& lamp, std::uint32_t i, std::uint32_t turn);
+
+}  // namespace posefusion::simulator

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/simulator/camera_path.hpp"
+#include "posefusion/simulator/random.hpp"
+#include "posefusion/simulator/robot_plan.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kFloorHeightM = 0.24;
+
+double smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+class RobotPath : public CameraPath {
+ public:
+  RobotPath(const Robot& spec, double duration_s, std::uint32_t seed)
+      : spec_(spec), seed_(seed), pieces_(planRobot(spec_, duration_s)) {}
+
+  Isometry3d at(double t) const override {
+    const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t,
+                                        [](double x, const Piece& p) { return x < p.start_s; });
+    const Piece& piece = after == pieces_.begin() ? *after : *(after - 1);
+    const double since = std::clamp(t - piece.start_s, 0.0, piece.length_s);
+    if (piece.kind == Piece::Kind::fall) return fallen(piece, since);
+    double part = since / piece.length_s;
+    // Walking starts and ends softly, over one step.
+    const double ramp = std::min(0.4, spec_.step_s / piece.length_s);
+    part = soften(part, ramp);
+    const Vector2d place = piece.from.at + part * (piece.to.at - piece.from.at);
+    const double yaw = piece.from.yaw + part * (piece.to.yaw - piece.from.yaw);
+    const bool moving = piece.kind != Piece::Kind::pause;
+    return standing(place, yaw) * gait(piece, moving ? since : -1.0, t);
+  }
+
+  std::vector<Event> events() const override {
+    std::vector<Event> events;
+    for (const Piece& p : pieces_) {
+      if (p.kind == Piece::Kind::fall) {
+        events.push_back({"fall", p.start_s, p.start_s + p.length_s});
+      }
+    }
+    return events;
+  }
+
+ private:
+  /// The part of a way after the part `x` of its time, with speed rising and falling over `ramp`.
+  static double soften(double x, double ramp) {
+    const double area = 1.0 - ramp;
+    if (x < ramp) return 0.5 * x * x / ramp / area;
+    if (x > 1.0 - ramp) return 1.0 - 0.5 * (1.0 - x) * (1.0 - x) / ramp / area;
+    return (x - 0.5 * ramp) / area;
+  }
+
+  Isometry3d standing(const Vector2d& place, double yaw) const {
+    const Vector3d eye(place.x(), place.y(), spec_.height_m);
+    if (!spec_.turns_body) return lookAt(eye, spec_.target);
+    return lookAt(eye, eye + Vector3d(std::cos(yaw), std::sin(yaw), -std::tan(spec_.pitch_rad)));
+  }
+
+  /// Movement of the head by walking, in the camera frame; `since` < 0: it stands.
+  Isometry3d gait(const Piece& piece, double since, double t) const {
+    Isometry3d T = Isometry3d::Identity();
+    const auto slow = [&](std::uint32_t salt) { return tremble(t, 0.2, 2.0, hash(seed_, salt)); };
+    Vector3d move(0.002 * slow(1U), 0.001 * slow(2U), 0.002 * slow(3U));
+    Vector3d turn(0.006 * slow(4U), 0.008 * slow(5U), 0.003 * slow(6U));
+    if (since >= 0.0) {
+      const double count = std::max(1.0, std::round(piece.length_s / spec_.step_s));
+      const double phase = since / piece.length_s * count;
+      const double step = std::floor(phase), within = phase - step;
+      const double strength = std::min({1.0, phase + 0.3, count - phase + 0.3});
+      const double side = std::fmod(piece.steps_before + step, 2.0) < 0.5 ? 1.0 : -1.0;
+      const double arc = std::sin(M_PI * within);
+      move += strength * Vector3d(side * spec_.sway_m * arc, -spec_.bounce_m * arc * arc, 0.0);
+      turn += strength * Vector3d(0.012 * std::sin(2.0 * M_PI * within), 0.010 * side * arc,
+                                  -0.020 * side * arc);
+      const double since_strike = within * piece.length_s / count;
+      addStrike(since_strike, static_cast<std::uint32_t>(piece.steps_before + step), strength, move,
+                turn);
+    }
+    T.translate(move);
+    T.rotate(AngleAxisd(turn.z(), Vector3d::UnitZ()) * AngleAxisd(turn.y(), Vector3d::UnitY()) *
+             AngleAxisd(turn.x(), Vector3d::UnitX()));
+    return T;
+  }
+
+  /// The heel strike rings through the body: damped, about 10 Hz, never twice the same.
+  void addStrike(double since_s, std::uint32_t step, double strength, Vector3d& move,
+                 Vector3d& turn) const {
+    const double height = spec_.jerk * strength * between(hash(seed_, 21U, step), 0.4, 1.6);
+    const double ring = height * std::exp(-since_s / 0.09) * std::sin(2.0 * M_PI * 9.5 * since_s);
+    move.y() += 0.0045 * ring;
+    turn.x() += 0.016 * ring;
+    turn.z() += 0.008 * ring * (uniform(hash(seed_, 22U, step)) - 0.5);
+    turn.y() += 0.008 * ring * (uniform(hash(seed_, 23U, step)) - 0.5);
+  }
+
+  Isometry3d lying(const Piece& piece) const {
+    const Vector2d ahead(std::cos(piece.from.yaw), std::sin(piece.from.yaw));
+    const double sign = piece.fall.direction == "backward" ? -1.0 : 1.0;
+    Isometry3d T = standing(piece.from.at + sign * 0.35 * ahead, piece.from.yaw);
+    T.translation().z() = kFloorHeightM;
+    if (piece.fall.direction == "forward") T.rotate(AngleAxisd(-1.15, Vector3d::UnitX()));
+    if (piece.fall.direction == "backward") T.rotate(AngleAxisd(1.25, Vector3d::UnitX()));
+    if (piece.fall.direction == "sideways") T.rotate(AngleAxisd(1.35, Vector3d::UnitZ()));
+    return T;
+  }
+
+  static Isometry3d mix(const Isometry3d& a, const Isometry3d& b, double t) {
+    Isometry3d T = Isometry3d::Identity();
+    T.linear() =
+        Eigen::Quaterniond(a.linear()).slerp(t, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    T.translation() = a.translation() + t * (b.translation() - a.translation());
+    return T;
+  }
+
+  Isometry3d fallen(const Piece& piece, double since) const {
+    const Isometry3d up = standing(piece.from.at, piece.from.yaw), down = lying(piece);
+    const Isometry3d again = standing(piece.to.at, piece.to.yaw);
+    const double impact = since - kStaggerS - kDropS;
+    if (impact < 0.0) {
+      // It tips slowly, then gravity takes over.
+      const double tip = 0.10 * std::pow(std::min(1.0, since / kStaggerS), 2.0);
+      const double drop = std::max(0.0, (since - kStaggerS) / kDropS);
+      Isometry3d T = mix(up, down, tip + (1.0 - tip) * drop * drop);
+      T.rotate(AngleAxisd(0.05 * std::sin(18.0 * since) * since, Vector3d::UnitZ()));
+      return T;
+    }
+    const double ring = std::exp(-impact / 0.16);
+    const double rise = smooth((impact - piece.fall.lie_s) / kGetUpS);
+    Isometry3d T = mix(down, again, rise);
+    T.translate(Vector3d(0.0, -0.05 * ring * std::abs(std::sin(14.0 * impact)), 0.0));
+    const double effort = 4.0 * rise * (1.0 - rise);
+    T.rotate(AngleAxisd(0.16 * ring * std::sin(40.0 * impact) +
+                            0.10 * effort * tremble(since, 0.5, 5.0, seed_ + 31U),
+                        Vector3d::UnitX()) *
+             AngleAxisd(0.12 * ring * std::sin(31.0 * impact) +
+                            0.10 * effort * tremble(since, 0.5, 5.0, seed_ + 32U),
+                        Vector3d::UnitZ()));
+    return T;
+  }
+
+  Robot spec_;
+  std::uint32_t seed_;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace
+
+std::unique_ptr<CameraPath> makeRobot(const Robot& spec, double duration_s, std::uint32_t seed) {
+  if (spec.waypoints.empty())
+    throw InputError("camera: waypoints is empty, expected [[x, y], ...]");
+  return std::make_unique<RobotPath>(spec, duration_s, seed);
+}
+
+}  // namespace posefusion::simulator

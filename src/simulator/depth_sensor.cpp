@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/simulator/depth_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "posefusion/core/parallel.hpp"
+#include "posefusion/simulator/random.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+constexpr double kSteepestRad = 1.53;
+/// The pattern is matched in windows: errors of neighbours hang together over so many pixels.
+constexpr int kWindowPx = 4;
+
+/// Smooth noise of unit variance over windows, plus its own for the pixel.
+float correlatedNoise(int col, int row, std::uint32_t key) {
+  const float x = static_cast<float>(col) / kWindowPx, y = static_cast<float>(row) / kWindowPx;
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  const float tx = x - static_cast<float>(ix), ty = y - static_cast<float>(iy);
+  const auto at = [&](int a, int b) {
+    return gaussian(hash(key, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)));
+  };
+  const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
+  const float sum =
+      w[0] * at(ix, iy) + w[1] * at(ix + 1, iy) + w[2] * at(ix, iy + 1) + w[3] * at(ix + 1, iy + 1);
+  const float norm = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3]);
+  const float own =
+      gaussian(hash(key, 0x51U, static_cast<std::uint32_t>(col), static_cast<std::uint32_t>(row)));
+  return 0.8F * sum / norm + 0.6F * own;
+}
+
+/// Chance that the pattern is not found: too dark, seen too flat, or mirrored away.
+float dropoutChance(float z, float cosine, float infrared, float gloss) {
+  const float signal = infrared * std::sqrt(cosine) / (0.25F + 0.11F * z * z);
+  float lost = 1.0F / (1.0F + std::exp((signal - 0.055F) / 0.011F));
+  const float theta = std::acos(std::min(1.0F, cosine));
+  lost = std::max(lost, std::clamp((theta - 1.36F) / 0.12F, 0.0F, 1.0F));
+  if (gloss > 0.2F) {
+    // Seen head on the reflection blinds, seen flat nothing comes back.
+    const float blinding = std::exp(-theta * theta / 0.006F);
+    lost = std::max(lost, gloss * std::max(blinding, std::clamp(theta - 0.7F, 0.0F, 1.0F)));
+  }
+  return lost;
+}
+
+/// Marks what the projector, the baseline to the right, does not see. In its picture near things
+/// lie further left: going left, whatever lies right of what was already met is covered by it.
+void markShadow(const DepthView& view, const PinholeCamera& camera, const DepthConfig& config,
+                int row, std::vector<char>& shadow) {
+  const float* depth = view.depth_m.ptr<float>(row);
+  const auto fb = static_cast<float>(camera.fx * config.baseline_m);
+  float covered = 1e9F;
+  for (int col = camera.width - 1; col >= 0; --col) {
+    if (depth[col] <= 0.0F) continue;
+    const float place = static_cast<float>(col) - fb / depth[col];
+    shadow[static_cast<std::size_t>(col)] = place > covered + 0.8F ? 1 : 0;
+    covered = std::min(covered, place);
+  }
+}
+
+struct Source {
+  int col, row;
+};
+
+/// Where the pixel's depth comes from: lateral noise takes it from a neighbour.
+Source displaced(const DepthView& view, const DepthConfig& config, int col, int row,
+                 std::uint32_t key) {
+  const float theta = std::acos(std::min(1.0F, view.cosine.at<float>(row, col)));
+  const double sigma = config.lateral * lateralSigmaPx(std::min<double>(theta, kSteepestRad)) * 0.7;
+  const std::uint32_t h =
+      hash(key, static_cast<std::uint32_t>(col) / 2U, static_cast<std::uint32_t>(row) / 2U);
+  const int dx = static_cast<int>(std::lround(sigma * gaussian(h)));
+  const int dy = static_cast<int>(std::lround(sigma * gaussian(hash(h, 1U))));
+  return {std::clamp(col + dx, 0, view.depth_m.cols - 1),
+          std::clamp(row + dy, 0, view.depth_m.rows - 1)};
+}
+
+}  // namespace
+
+double axialSigmaM(double z_m, double theta_rad) {
+  const double theta = std::min(theta_rad, kSteepestRad);
+  const double flat = 0.0012 + 0.0019 * (z_m - 0.4) * (z_m - 0.4);
+  const double tilted = 0.0001 / std::sqrt(std::max(z_m, 0.1)) * theta * theta /
+                        ((M_PI_2 - theta) * (M_PI_2 - theta));
+  return flat + tilted;
+}
+
+double lateralSigmaPx(double theta_rad) { return 0.8 + 0.035 * theta_rad / (M_PI_2 - theta_rad); }
+
+double quantumM(double z_m, const DepthConfig& config, double focal_px) {
+  return z_m * z_m / (focal_px * config.baseline_m * config.disparity_steps);
+}
+
+namespace {
+
+/// Relative error of depth for each 2 m of it: smooth over the picture, fixed for a camera. About
+/// one per cent at 2 m is what Teichman, Miller and Thrun ("Unsupervised Intrinsic Calibration of
+/// Depth Sensors via SLAM", 2013) find before calibration.
+class Distortion {
+ public:
+  Distortion(const DepthConfig& config, const PinholeCamera& camera) {
+    const auto phase = [&](std::uint32_t i) {
+      return 6.2832F * uniform(hash(static_cast<std::uint32_t>(config.specimen), i));
+    };
+    const float height = kUsual * static_cast<float>(config.distortion);
+    for (int col = 0; col < camera.width; ++col) {
+      const float u = 6.2832F * static_cast<float>(col) / static_cast<float>(camera.width);
+      wide_.push_back(height * std::sin(0.7F * u + phase(1U)));
+      narrow_.push_back(0.6F * height * std::sin(1.9F * u + phase(2U)));
+    }
+    for (int row = 0; row < camera.height; ++row) {
+      const float v = 4.7F * static_cast<float>(row) / static_cast<float>(camera.height);
+      tall_.push_back(std::cos(0.8F * v + phase(3U)));
+      low_.push_back(std::cos(2.1F * v + phase(4U)));
+    }
+  }
+  float at(int col, int row) const {
+    const auto c = static_cast<std::size_t>(col), r = static_cast<std::size_t>(row);
+    return wide_[c] * tall_[r] + narrow_[c] * low_[r];
+  }
+
+ private:
+  static constexpr float kUsual = 0.010F;
+  std::vector<float> wide_, narrow_, tall_, low_;
+};
+
+/// One frame's constants for the pixels.
+struct Sensing {
+  const DepthView& view;
+  const DepthConfig& config;
+  std::uint32_t key;
+  double fb_steps;  ///< focal length x baseline, in steps of disparity
+  Distortion distortion;
+};
+
+/// The depth (m) reported at (col, row) for what is at `s`; 0: none.
+double reported(const Sensing& f, const Source& s, int col, int row) {
+  double z = f.view.depth_m.at<float>(s.row, s.col);
+  if (z <= 0.0 || !f.config.noise) return z;
+  const float cosine = f.view.cosine.at<float>(s.row, s.col);
+  // Dropouts come as specks of a few pixels rather than single ones.
+  const std::uint32_t speck = hash(f.key, 0x77U, static_cast<std::uint32_t>(col) / 3U,
+                                   static_cast<std::uint32_t>(row) / 3U);
+  const std::uint32_t own = hash(speck, static_cast<std::uint32_t>(col % 3 * 3 + row % 3));
+  const float luck = 0.6F * uniform(speck) + 0.4F * uniform(own);
+  const float lost =
+      dropoutChance(static_cast<float>(z), cosine, f.view.infrared.at<float>(s.row, s.col),
+                    f.view.gloss.at<float>(s.row, s.col));
+  if (luck < f.config.dropouts * lost) return 0.0;
+  const double sigma = f.config.axial * axialSigmaM(z, std::acos(std::min(1.0F, cosine)));
+  z *= 1.0 + 0.5 * z * f.distortion.at(col, row);
+  z = std::max(z + sigma * correlatedNoise(col, row, f.key), 0.05);
+  return f.fb_steps / std::max(1.0, std::round(f.fb_steps / z));
+}
+
+}  // namespace
+
+void senseDepth(const DepthView& view, const PinholeCamera& camera, const DepthConfig& config,
+                std::uint32_t key, cv::Mat& depth_mm, cv::Mat& mask) {
+  depth_mm.create(view.depth_m.size(), CV_16UC1);
+  mask.create(view.depth_m.size(), CV_8UC1);
+  const Sensing frame{view, config, key, camera.fx * config.baseline_m * config.disparity_steps,
+                      Distortion(config, camera)};
+  const int shift = static_cast<int>(std::lround(config.misregistration_px));
+  parallelFor(static_cast<std::size_t>(camera.height), 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<char> shadow;
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      shadow.assign(static_cast<std::size_t>(camera.width), 0);
+      if (config.noise && config.shadow) markShadow(view, camera, config, row, shadow);
+      for (int col = 0; col < camera.width; ++col) {
+        const int from = std::clamp(col - shift, 0, camera.width - 1);
+        const Source s = config.noise ? displaced(view, config, from, row, key) : Source{from, row};
+        const double z =
+            shadow[static_cast<std::size_t>(from)] != 0 ? 0.0 : reported(frame, s, col, row);
+        const bool seen = z > 0.0 && z >= config.min_m && z <= config.max_m;
+        mask.at<std::uint8_t>(row, col) = view.person.at<std::uint8_t>(s.row, s.col);
+        depth_mm.at<std::uint16_t>(row, col) =
+            seen ? static_cast<std::uint16_t>(std::lround(1000.0 * z)) : 0;
+      }
+    }
+  });
+}
+
+}  // namespace posefusion::simulator

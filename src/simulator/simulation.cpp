@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/simulator/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
+#include "posefusion/simulator/camera_check.hpp"
+#include "posefusion/simulator/random.hpp"
+#include "posefusion/simulator/simulation_state.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
+
+/// Everybody's goals must be somewhere a person can stand.
+void checkPeople(const Scenario& s, const World& world) {
+  const auto inside = [&](const Eigen::Vector2d& p) {
+    return std::any_of(world.rooms.begin(), world.rooms.end(), [&](const auto& room) {
+      return room.contains(Eigen::Vector3d(p.x(), p.y(), 0.5));
+    });
+  };
+  for (std::size_t i = 0; i < s.people.size(); ++i) {
+    const std::string who = "people[" + std::to_string(i) + "]";
+    if (!inside(s.people[i].start_m)) throw InputError(who + ": start_m is outside of all rooms");
+    for (std::size_t k = 0; k < s.people[i].script.size(); ++k) {
+      const Action& a = s.people[i].script[k];
+      const bool goes = a.kind == Action::Kind::walk || a.kind == Action::Kind::sit;
+      if (goes && !inside(a.at_m.head<2>())) {
+        throw InputError(who + ": script[" + std::to_string(k) + "] leads outside of all rooms");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario) : state_(std::make_unique<State>(scenario)) {
+  checkPeople(scenario, state_->world);
+  checkCamera(*state_->path, state_->world, state_->caster, scenario.start_s + scenario.duration_s);
+}
+
+Simulation::~Simulation() = default;
+
+int Simulation::frameCount() const {
+  return std::max(
+      1, static_cast<int>(std::floor(state_->scenario.duration_s * state_->scenario.fps + 1e-6)));
+}
+
+SimulatedFrame Simulation::frame(int index) {
+  State& s = *state_;
+  const auto number = static_cast<std::uint32_t>(index);
+  s.now = s.exposure.current();
+  const State::Moments m = s.momentsOf(index);
+  SimulatedFrame out;
+  out.index = index;
+  out.frame.stamp_ns = stampOf(m.color);
+  out.depth_stamp_ns = stampOf(m.depth);
+  out.dropped = uniform(hash(s.scenario.seed, 73U, number)) < s.scenario.dropped;
+  if (out.dropped) return out;
+  out.T_world_camera = s.path->at(m.color);
+  out.exposure = s.now;
+  out.smear_px = s.scenario.color.motion_blur ? s.smearOf(m) : 0.0;
+  out.frame.camera = s.scenario.camera;
+  s.placePeople(m);
+  const Shutter shutter = s.shutterFor(m, s.samplesFor(m, out.smear_px));
+  s.renderer.color(s.scenario.camera, shutter, s.radiance);
+  const bool first = !s.exposure.isSet();
+  if (first) {
+    s.exposure.look(s.radiance);
+    out.exposure = s.now = s.exposure.current();
+  }
+  s.color_sensor.expose(s.radiance, s.now, hash(s.scenario.seed, 74U, number), out.frame.color);
+  if (!first) s.exposure.look(s.radiance);
+  s.renderer.depth(s.scenario.camera, viewAt(s.path->at(m.depth), s.within(m, m.depth)), s.view);
+  senseDepth(s.view, s.scenario.camera, s.scenario.depth, hash(s.scenario.seed, 75U, number),
+             out.frame.depth, out.mask);
+  s.observePeople(m, out);
+  return out;
+}
+
+void Simulation::jump() { state_->exposure.restart(); }
+
+Trajectory Simulation::truth() const {
+  const State& s = *state_;
+  const TruthConfig& c = s.scenario.truth;
+  Trajectory trajectory;
+  const int count = static_cast<int>(std::floor((s.scenario.duration_s + 0.05) * c.rate_hz)) + 1;
+  for (int i = 0; i < count; ++i) {
+    const double t = s.scenario.start_s + i / c.rate_hz;
+    if (c.gap_every_s > 0.0) {
+      const auto window = static_cast<std::uint32_t>(t / c.gap_every_s);
+      const double gap = window * c.gap_every_s + between(hash(s.scenario.seed, 76U, window), 0.0,
+                                                          std::max(0.0, c.gap_every_s - c.gap_s));
+      if (t >= gap && t < gap + c.gap_s) continue;
+    }
+    Vector6d error;
+    for (int k = 0; k < 6; ++k) {
+      const float luck = gaussian(
+          hash(s.scenario.seed, 77U, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)));
+      error[k] = luck * (k < 3 ? c.noise_m : c.noise_rad);
+    }
+    trajectory.push_back({stampOf(t), s.path->at(t) * expSe3(error)});
+  }
+  return trajectory;
+}
+
+std::vector<Event> Simulation::events() const {
+  const double from = state_->scenario.start_s, to = from + state_->scenario.duration_s;
+  std::vector<Event> events;
+  for (const Event& e : state_->path->events()) {
+    if (e.end_s > from && e.start_s < to) events.push_back(e);
+  }
+  return events;
+}
+
+std::int64_t Simulation::stampOf(double time_s) const {
+  return kFirstStampNs + static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000;
+}
+
+const World& Simulation::world() const { return state_->world; }
+const Scenario& Simulation::scenario() const { return state_->scenario; }
+
+}  // namespace posefusion::simulator

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a frame is put together.
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/simulator/posture.hpp"
+#include "posefusion/simulator/random.hpp"
+#include "posefusion/simulator/simulation_state.hpp"
+#include "posefusion/simulator/truth.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3f;
+
+constexpr double kWalkClearanceM = 0.30;
+constexpr double kShadowReachM = 9.0;
+
+World buildWorld(const Scenario& s) {
+  World world;
+  for (const auto& room : s.rooms) addRoom(world, room, hash(s.seed, 61U) % 1000U);
+  for (const auto& object : s.objects) addObject(world, object);
+  return world;
+}
+
+std::vector<Avatar> buildPeople(const Scenario& s) {
+  std::vector<Avatar> people;
+  people.reserve(s.people.size());
+  for (const auto& person : s.people) people.emplace_back(person.build, person.outfit);
+  return people;
+}
+
+std::unique_ptr<CameraPath> buildPath(const Scenario& s) {
+  const std::uint32_t seed = hash(s.seed, 62U);
+  if (s.robot) return makeRobot(*s.robot, s.start_s + s.duration_s + 1.0, seed);
+  return makeHandHeld(s.hand_held.value_or(HandHeld()), seed);
+}
+
+}  // namespace
+
+ViewSample viewAt(const Isometry3d& T_world_camera, double time) {
+  return {T_world_camera.linear().cast<float>(), T_world_camera.translation().cast<float>(),
+          static_cast<float>(std::clamp(time, 0.0, 1.0))};
+}
+
+Simulation::State::State(const Scenario& s)
+    : scenario(s),
+      world(buildWorld(s)),
+      people(buildPeople(s)),
+      caster(world.mesh),
+      lighting(world, caster),
+      path(buildPath(s)),
+      crowd(
+          s.people, Walkway(world, kWalkClearanceM),
+          [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
+          s.start_s + s.duration_s + 1.0),
+      renderer(world, caster, lighting, people),
+      color_sensor(s.color),
+      exposure(s.color) {
+  for (const auto& person : people) caster.addPerson(person.triangles(), person.vertexCount());
+  positions.resize(people.size());
+  normals.resize(people.size());
+}
+
+Simulation::State::Moments Simulation::State::momentsOf(int index) const {
+  const double color = scenario.start_s + (index + 1) / scenario.fps;
+  const float luck = gaussian(hash(scenario.seed, 71U, static_cast<std::uint32_t>(index)));
+  const double jitter = std::clamp<double>(luck, -3.0, 3.0) * scenario.depth.jitter_ms;
+  const double depth = color + 1e-3 * (scenario.depth.offset_ms + jitter);
+  const double half = scenario.color.motion_blur ? 0.5e-3 * now.time_ms : 0.0;
+  const double rolling = 0.5e-3 * scenario.color.rolling_shutter_ms;
+  const double first = std::min(color - half - rolling, depth) - 1e-4;
+  return {color, depth, first, std::max(color + half + rolling, depth) + 1e-4};
+}
+
+double Simulation::State::smearOf(const Moments& m) const {
+  const double half = 0.5e-3 * now.time_ms;
+  const Isometry3d T = path->at(m.color - half).inverse() * path->at(m.color + half);
+  const PinholeCamera& c = scenario.camera;
+  double most = 0.0;
+  for (const double u : {0.0, 0.5, 1.0}) {
+    for (const double v : {0.0, 0.5, 1.0}) {
+      const Eigen::Vector2d pixel(u * (c.width - 1), v * (c.height - 1));
+      const Eigen::Vector3d p = T * c.unproject(pixel.x(), pixel.y(), 2.0);
+      if (p.z() > 0.1) most = std::max(most, (c.project(p) - pixel).norm());
+    }
+  }
+  return most;
+}
+
+int Simulation::State::samplesFor(const Moments& m, double smear_px) const {
+  const ColorConfig& c = scenario.color;
+  if (!c.motion_blur) return 1;
+  // Hands of a walker are about twice as fast as the walker.
+  const Eigen::Vector3d eye = path->at(m.color).translation();
+  double limbs = 0.0;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const ActorState state = crowd.at(i, m.color);
+    const double distance = std::max(0.5, (state.at - eye.head<2>()).norm());
+    const double speed = 2.0 * state.speed_m_s + 0.6 * state.talk + 0.5 * state.reach;
+    limbs = std::max(limbs, speed * 1e-3 * now.time_ms / distance * scenario.camera.fx);
+  }
+  const int wanted = static_cast<int>(std::ceil(std::max(smear_px, limbs) / 3.0));
+  return std::clamp(wanted, c.samples, std::max(c.samples, c.max_samples));
+}
+
+void Simulation::State::placePeople(const Moments& m) {
+  const Vector3f eye = path->at(m.color).translation().cast<float>();
+  std::vector<Eigen::Vector2f> places;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const std::uint32_t seed = hash(scenario.seed, 72U, static_cast<std::uint32_t>(i));
+    const int id = static_cast<int>(i);
+    Posture middle;
+    for (const int end : {0, 1}) {
+      const ActorState state = crowd.at(i, end == 0 ? m.first : m.last);
+      people[i].skin(poseBody(people[i].rig(), state, seed), caster.shape(id, end));
+    }
+    const ActorState state = crowd.at(i, 0.5 * (m.first + m.last));
+    middle = poseBody(people[i].rig(), state, seed);
+    people[i].skinNormals(middle, normals[i]);
+    positions[i].resize(people[i].vertexCount());
+    people[i].skin(middle, positions[i][0].data());
+    places.push_back(state.at.cast<float>());
+  }
+  caster.commitPeople();
+  places.erase(
+      std::remove_if(places.begin(), places.end(),
+                     [&](const auto& p) { return (p - eye.head<2>()).norm() > kShadowReachM; }),
+      places.end());
+  lighting.castShadows(places);
+  renderer.lightPeople(positions, normals, eye);
+}
+
+Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
+  Shutter shutter;
+  shutter.samples = samples;
+  const double rolling = 1e-3 * scenario.color.rolling_shutter_ms;
+  shutter.bands = rolling > 0.0 ? (scenario.camera.height + 7) / 8 : 1;
+  const int moments = samples * kViewsPerSample;
+  for (int band = 0; band < shutter.bands; ++band) {
+    const double row = shutter.bands > 1 ? (band + 0.5) / shutter.bands - 0.5 : 0.0;
+    for (int i = 0; i < moments; ++i) {
+      const double part = scenario.color.motion_blur ? (i + 0.5) / moments - 0.5 : 0.0;
+      const double time = m.color + 1e-3 * now.time_ms * part + rolling * row;
+      shutter.views.push_back(viewAt(path->at(time), within(m, time)));
+    }
+  }
+  return shutter;
+}
+
+void Simulation::State::observePeople(const Moments& m, SimulatedFrame& out) const {
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const std::uint32_t seed = hash(scenario.seed, 72U, static_cast<std::uint32_t>(i));
+    const Posture posture = poseBody(people[i].rig(), crowd.at(i, m.color), seed);
+    PersonTruth truth = observe(static_cast<int>(i), jointsOf(people[i].rig(), posture),
+                                scenario.camera, out.T_world_camera, view);
+    truth.name = scenario.people[i].name;
+    const bool near =
+        std::any_of(truth.in_view.begin(), truth.in_view.end(), [](bool b) { return b; });
+    if (truth.pixels > 0 || near) out.people.push_back(truth);
+  }
+}
+
+}  // namespace posefusion::simulator

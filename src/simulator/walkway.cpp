@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/simulator/walkway.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+namespace posefusion::simulator {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kCellM = 0.1;
+
+bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
+  const double c = std::cos(f.yaw), s = std::sin(f.yaw);
+  const Vector2d d = p - f.centre;
+  const Vector2d local(c * d.x() + s * d.y(), -s * d.x() + c * d.y());
+  const Vector2d beyond = (local.cwiseAbs() - f.half_size).cwiseMax(0.0);
+  return beyond.norm() < margin_m;
+}
+
+}  // namespace
+
+Walkway::Walkway(const World& world, double clearance_m) {
+  Eigen::AlignedBox3d box;
+  for (const auto& room : world.rooms) box.extend(room);
+  if (box.isEmpty()) return;
+  low_ = box.min().head<2>();
+  columns_ = std::max(1, static_cast<int>(std::ceil(box.sizes().x() / kCellM)));
+  rows_ = std::max(1, static_cast<int>(std::ceil(box.sizes().y() / kCellM)));
+  free_.assign(static_cast<std::size_t>(columns_ * rows_), 0);
+  for (int cell = 0; cell < columns_ * rows_; ++cell) {
+    const Vector2d p = centreOf(cell);
+    for (const auto& room : world.rooms) {
+      const Vector2d inside = (p - room.min().head<2>()).cwiseMin(room.max().head<2>() - p);
+      if (inside.minCoeff() > clearance_m) free_[static_cast<std::size_t>(cell)] = 1;
+    }
+    for (const auto& passage : world.passages) {
+      if (covers(passage, p, 0.0)) free_[static_cast<std::size_t>(cell)] = 1;
+    }
+    for (const auto& footprint : world.footprints) {
+      if (covers(footprint, p, clearance_m)) free_[static_cast<std::size_t>(cell)] = 0;
+    }
+  }
+}
+
+int Walkway::cellAt(const Vector2d& p) const {
+  const int col = static_cast<int>(std::floor((p.x() - low_.x()) / kCellM));
+  const int row = static_cast<int>(std::floor((p.y() - low_.y()) / kCellM));
+  if (col < 0 || row < 0 || col >= columns_ || row >= rows_) return -1;
+  return row * columns_ + col;
+}
+
+Vector2d Walkway::centreOf(int cell) const {
+  return low_ + kCellM * Vector2d(cell % columns_ + 0.5, cell / columns_ + 0.5);
+}
+
+bool Walkway::isFree(const Vector2d& p) const {
+  const int cell = cellAt(p);
+  return cell >= 0 && !free_.empty() && free_[static_cast<std::size_t>(cell)] != 0;
+}
+
+Vector2d Walkway::nearestFree(const Vector2d& p) const {
+  if (isFree(p) || free_.empty()) return p;
+  double best = std::numeric_limits<double>::infinity();
+  Vector2d place = p;
+  for (int cell = 0; cell < columns_ * rows_; ++cell) {
+    if (free_[static_cast<std::size_t>(cell)] == 0) continue;
+    const double d = (centreOf(cell) - p).squaredNorm();
+    if (d < best) best = d, place = centreOf(cell);
+  }
+  return place;
+}
+
+bool Walkway::seesFree(const Vector2d& a, const Vector2d& b) const {
+  const int steps = std::max(1, static_cast<int>((b - a).norm() / (0.1 * kCellM)));
+  for (int i = 0; i <= steps; ++i) {
+    if (!isFree(a + (b - a) * (static_cast<double>(i) / steps))) return false;
+  }
+  return true;
+}
+
+std::vector<int> Walkway::search(int from, int to) const {
+  // A* with the straight distance; ties by cell number, so the way is always the same.
+  std::vector<double> cost(free_.size(), std::numeric_limits<double>::infinity());
+  std::vector<int> parent(free_.size(), -1);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  cost[static_cast<std::size_t>(from)] = 0.0;
+  open.emplace(0.0, from);
+  while (!open.empty()) {
+    const int cell = open.top().second;
+    open.pop();
+    if (cell == to) break;
+    for (int dr = -1; dr <= 1; ++dr) {
+      for (int dc = -1; dc <= 1; ++dc) {
+        const int col = cell % columns_ + dc, row = cell / columns_ + dr;
+        if (col < 0 || row < 0 || col >= columns_ || row >= rows_) continue;
+        const int next = row * columns_ + col;
+        if (free_[static_cast<std::size_t>(next)] == 0) continue;
+        const double g = cost[static_cast<std::size_t>(cell)] + std::hypot(dr, dc);
+        if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
+        cost[static_cast<std::size_t>(next)] = g;
+        parent[static_cast<std::size_t>(next)] = cell;
+        open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCellM, next);
+      }
+    }
+  }
+  std::vector<int> cells;
+  if (parent[static_cast<std::size_t>(to)] < 0) return cells;
+  for (int cell = to; cell >= 0; cell = parent[static_cast<std::size_t>(cell)])
+    cells.push_back(cell);
+  std::reverse(cells.begin(), cells.end());
+  return cells;
+}
+
+std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to) const {
+  const Vector2d start = nearestFree(from), goal = nearestFree(to);
+  std::vector<Vector2d> way{from};
+  if (!seesFree(start, goal) && cellAt(start) >= 0 && cellAt(goal) >= 0) {
+    const std::vector<int> cells = search(cellAt(start), cellAt(goal));
+    Vector2d corner = start;
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      if (seesFree(corner, centreOf(cells[i]))) continue;
+      corner = centreOf(cells[i - 1]);
+      way.push_back(corner);
+    }
+  }
+  way.push_back(to);
+  return way;
+}
+
+}  // namespace posefusion::simulator

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/simulator/yaml_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/core/error.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+std::string shortText(const YAML::Node& node) {
+  YAML::Emitter out;
+  out << YAML::Flow << node;
+  std::string text = out.c_str();
+  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+}  // namespace
+
+YamlMap::YamlMap(const YAML::Node& node, std::string where)
+    : node_(node), where_(std::move(where)) {
+  if (!node_.IsMap()) {
+    throw InputError(where_ + " is '" + shortText(node_) + "', expected keys with values");
+  }
+}
+
+void YamlMap::fail(const std::string& key, const std::string& what) const {
+  throw InputError(where_ + ": " + key + " " + what);
+}
+
+bool YamlMap::has(const std::string& key) const {
+  const YAML::Node& node = node_;
+  return static_cast<bool>(node[key]);
+}
+
+YAML::Node YamlMap::get(const std::string& key) {
+  used_.insert(key);
+  const YAML::Node& node = node_;
+  return node[key];
+}
+
+double YamlMap::number(const std::string& key, double otherwise, double min, double max) {
+  const YAML::Node node = get(key);
+  if (!node) return otherwise;
+  double value = 0.0;
+  try {
+    value = node.as<double>();
+  } catch (const YAML::Exception&) {
+    fail(key, "is '" + shortText(node) + "', expected a number");
+  }
+  if (!(value >= min && value <= max)) {
+    fail(key, "is " + shortText(node) + ", expected " + shortText(YAML::Node(min)) + " to " +
+                  shortText(YAML::Node(max)));
+  }
+  return value;
+}
+
+int YamlMap::integer(const std::string& key, int otherwise, int min, int max) {
+  const double value = number(key, otherwise, min, max);
+  if (value != std::floor(value)) fail(key, "is not a whole number");
+  return static_cast<int>(value);
+}
+
+bool YamlMap::flag(const std::string& key, bool otherwise) {
+  const YAML::Node node = get(key);
+  if (!node) return otherwise;
+  try {
+    return node.as<bool>();
+  } catch (const YAML::Exception&) {
+    fail(key, "is '" + shortText(node) + "', expected true or false");
+  }
+}
+
+std::string YamlMap::text(const std::string& key, const std::string& otherwise) {
+  const YAML::Node node = get(key);
+  if (!node) return otherwise;
+  if (!node.IsScalar()) fail(key, "is '" + shortText(node) + "', expected a text");
+  return node.Scalar();
+}
+
+std::string YamlMap::word(const std::string& key, const std::string& otherwise,
+                          const std::vector<std::string>& words) {
+  const std::string value = text(key, otherwise);
+  if (std::find(words.begin(), words.end(), value) != words.end()) return value;
+  std::string known;
+  for (const auto& word : words) known += (known.empty() ? "" : ", ") + word;
+  fail(key, "is '" + value + "', expected one of " + known);
+}
+
+double YamlMap::angle(const std::string& key, double otherwise_rad) {
+  return number(key, otherwise_rad * 180.0 / M_PI, -1e4, 1e4) * M_PI / 180.0;
+}
+
+std::vector<double> YamlMap::numbers(const std::string& key, std::size_t count) {
+  const YAML::Node node = get(key);
+  std::vector<double> values;
+  try {
+    values = node.as<std::vector<double>>();
+  } catch (const YAML::Exception&) {
+  }
+  const bool finite =
+      std::all_of(values.begin(), values.end(), [](double v) { return std::abs(v) < 1e4; });
+  if (values.size() != count || !finite) {
+    fail(key,
+         "is '" + shortText(node) + "', expected a list of " + std::to_string(count) + " numbers");
+  }
+  return values;
+}
+
+Eigen::Vector2d YamlMap::vector2(const std::string& key, const Eigen::Vector2d& otherwise) {
+  if (!get(key)) return otherwise;
+  const auto v = numbers(key, 2);
+  return {v[0], v[1]};
+}
+
+Eigen::Vector3d YamlMap::vector3(const std::string& key, const Eigen::Vector3d& otherwise) {
+  return maybeVector3(key).value_or(otherwise);
+}
+
+std::optional<Eigen::Vector3d> YamlMap::maybeVector3(const std::string& key) {
+  if (!get(key)) return std::nullopt;
+  const auto v = numbers(key, 3);
+  return Eigen::Vector3d(v[0], v[1], v[2]);
+}
+
+std::optional<Eigen::Vector3d> YamlMap::placeOf(const std::string& key) {
+  const YAML::Node node = get(key);
+  if (!node) return std::nullopt;
+  const auto v = numbers(key, node.IsSequence() && node.size() == 3 ? 3 : 2);
+  return Eigen::Vector3d(v[0], v[1], v.size() == 3 ? v[2] : std::nan(""));
+}
+
+std::vector<Eigen::Vector2d> YamlMap::points(const std::string& key) {
+  const YAML::Node node = get(key);
+  std::vector<Eigen::Vector2d> points;
+  if (!node) return points;
+  try {
+    for (const auto& v : node.as<std::vector<std::vector<double>>>()) {
+      if (v.size() != 2) throw YAML::Exception(YAML::Mark(), "");
+      points.emplace_back(v[0], v[1]);
+    }
+  } catch (const YAML::Exception&) {
+    fail(key, "is '" + shortText(node) + "', expected a list of [x, y]");
+  }
+  return points;
+}
+
+YamlMap YamlMap::map(const std::string& key) {
+  const YAML::Node node = get(key);
+  return YamlMap(node ? node : YAML::Node(YAML::NodeType::Map), where_ + ": " + key);
+}
+
+std::vector<YamlMap> YamlMap::maps(const std::string& key) {
+  const YAML::Node node = get(key);
+  std::vector<YamlMap> maps;
+  if (!node) return maps;
+  if (!node.IsSequence()) fail(key, "is '" + shortText(node) + "', expected a list");
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    maps.emplace_back(node[i], where_ + ": " + key + "[" + std::to_string(i) + "]");
+  }
+  return maps;
+}
+
+void YamlMap::finish() const {
+  for (const auto& entry : node_) {
+    const auto key = entry.first.as<std::string>();
+    if (used_.count(key) != 0) continue;
+    std::string known;
+    for (const auto& word : used_) known += (known.empty() ? "" : ", ") + word;
+    fail(key, "is unknown, expected one of " + known);
+  }
+}
+
+}  // namespace posefusion::simulator
