@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <OpenNI.h>
+
+#include <string>
+
+namespace posefusion::openni2 {
+
+/// Writes streams into an .oni file, by OpenNI2's own recorder and without loss. The file has a
+/// temporary name until the recording ends.
+class Recording {
+ public:
+  /// Throws InputError when the file cannot be made.
+  Recording(const std::string& path, openni::VideoStream& color, openni::VideoStream& depth);
+  ~Recording();
+
+  /// Ends the recording and names the file. Throws InputError when that fails.
+  void finish();
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  std::string temporary_;
+  openni::Recorder recorder_;
+};
+
+}  // namespace posefusion::openni2
