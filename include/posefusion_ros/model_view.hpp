@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <std_msgs/Header.h>
+
+#include "posefusion/map/model_view.hpp"
+#include "posefusion_ros/messages.hpp"
+
+namespace posefusion_ros {
+
+/// A copy of the view's planes (depth, normals, intensity). `header` has the stamp of the frame
+/// after which the view holds.
+ModelViewMsg::Ptr toMessage(const posefusion::ModelView& view, const std_msgs::Header& header);
+
+/// The view on the message's bytes: the message must live as long as it. Empty where there was no
+/// map. Throws InputError when the message is not one of ours.
+posefusion::ModelView fromMessage(const ModelViewMsg::ConstPtr& message);
+
+}  // namespace posefusion_ros

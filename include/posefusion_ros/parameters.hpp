@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <XmlRpcValue.h>
+#include <ros/node_handle.h>
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "posefusion/config.hpp"
+
+namespace posefusion_ros {
+
+/// Limits of a number parameter.
+struct Range {
+  double min = 0.0;
+  double max = 0.0;
+};
+
+/// The private parameters of one nodelet: its own ones, and the groups of posefusion::Config
+/// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by
+/// unknown(). Errors are InputError naming parameter, value and what was expected.
+class Parameters {
+ public:
+  explicit Parameters(const ros::NodeHandle& private_handle);
+  /// `values` is a struct of parameters, or anything else for none; `origin` goes into messages.
+  Parameters(XmlRpc::XmlRpcValue values, std::string origin);
+
+  bool flag(const std::string& name, bool fallback);
+  int integer(const std::string& name, int fallback, const Range& range);
+  double number(const std::string& name, double fallback, const Range& range);
+  std::string text(const std::string& name, const std::string& fallback);
+  std::string choice(const std::string& name, const std::string& fallback,
+                     const std::vector<std::string>& words);
+
+  /// The chain's configuration: defaults, then the groups, then `mode` where it is not empty.
+  /// `groups` are those that this nodelet uses, for effective().
+  posefusion::Config config(const std::vector<std::string>& groups);
+
+  /// Parameters that were set but that nobody asked for.
+  std::vector<std::string> unknown() const;
+
+  /// All that was asked for with the values in force, "name=value name=value".
+  std::string effective() const { return effective_.str(); }
+
+ private:
+  template <typename Value>
+  Value read(const std::string& name, const Value& fallback, const std::string& expected);
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const;
+  template <typename Value>
+  void note(const std::string& name, const Value& value);
+
+  YAML::Node values_;
+  std::string origin_;
+  std::set<std::string> known_;
+  std::ostringstream effective_;
+};
+
+/// A parameter tree as YAML, for the loader that files and command lines use too.
+YAML::Node toYaml(XmlRpc::XmlRpcValue value);
+
+}  // namespace posefusion_ros

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nav_msgs/Path.h>
+#include <ros/node_handle.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "posefusion/mapper.hpp"
+#include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/transforms.hpp"
+
+namespace posefusion_ros {
+
+/// Frames and rates of the published poses.
+struct PoseOutputSettings {
+  bool publish_tf = true;
+  std::string map_frame;
+  std::string odom_frame;     ///< empty: nobody owns odometry, map -> base is published
+  std::string base_frame;     ///< empty: the optical frame of the camera
+  double tf_timeout_s = 0.1;  ///< wall time
+  double path_period_s = 1.0;
+};
+
+PoseOutputSettings readPoseOutput(Parameters& parameters);
+
+/// Publishes where the camera is: TF, odometry, pose and path, in a map frame with z up.
+///
+/// The core's map begins at the first camera pose. The map frame begins at the base (odometry where
+/// there is one) as TF has it at that time; without a base frame the first camera counts as level.
+/// Not thread safe.
+class PoseOutput {
+ public:
+  PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings);
+
+  /// Publishes the pose of a fused frame; `image` is the header of its colour image. Returns what
+  /// is missing (a transform), empty when all is well; nothing is published then.
+  std::string publish(const std_msgs::Header& image, const posefusion::FrameStatus& status);
+
+  /// The core's map in the map frame; nothing until the first pose could be published.
+  const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
+
+  void reset();
+
+ private:
+  struct Links;  // camera and odometry of the robot at the stamp
+  bool look(const std_msgs::Header& image, Links& links, std::string& error) const;
+  void sendTransform(const ros::Time& stamp, const std::string& child, const Eigen::Isometry3d& T);
+  void sendOdometry(const ros::Time& stamp, const std::string& base, const Eigen::Isometry3d& T,
+                    const posefusion::FrameStatus& status);
+  void extendPath(const geometry_msgs::PoseStamped& pose);
+
+  PoseOutputSettings settings_;
+  ros::Publisher odometry_, pose_, path_publisher_;
+  std::unique_ptr<TransformLookup> lookup_;  // only where a frame has to be looked up
+  tf2_ros::TransformBroadcaster broadcaster_;
+  std::optional<Eigen::Isometry3d> T_map_start_;
+  std::optional<Eigen::Isometry3d> T_map_base_before_;
+  ros::Time before_, path_sent_;
+  nav_msgs::Path path_;
+};
+
+}  // namespace posefusion_ros

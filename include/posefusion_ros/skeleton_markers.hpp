@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <std_msgs/Header.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "posefusion/core/frame.hpp"
+#include "posefusion/pose/skeleton.hpp"
+
+namespace posefusion_ros {
+
+/// Skeletons in the camera's optical frame: a line per limb whose two joints were seen and have
+/// depth. Begins with a marker that deletes those of the frame before.
+visualization_msgs::MarkerArray toMarkers(const posefusion::People& people,
+                                          const posefusion::RgbdFrame& frame,
+                                          const std_msgs::Header& header);
+
+}  // namespace posefusion_ros

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pluginlib/class_list_macros.hpp>
+
+#include <cstdio>
+#include <memory>
+
+#include "posefusion/mapper.hpp"
+#include "posefusion_ros/chain_nodelet.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/exact_matcher.hpp"
+#include "posefusion_ros/map_output.hpp"
+#include "posefusion_ros/map_saver.hpp"
+#include "posefusion_ros/names.hpp"
+#include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/trigger.hpp"
+#include "posefusion_ros/worker.hpp"
+
+namespace posefusion_ros {
+
+using posefusion::FrameOutcome;
+using posefusion::FrameStatus;
+using sensor_msgs::CameraInfo;
+using sensor_msgs::Image;
+using std_srvs::Trigger;
+
+/// Owns the map: tracks and fuses static frames, publishes pose and map, reports one status for
+/// every frame of the chain. Everything that touches the map runs in the worker.
+class FusionNodelet : public ChainNodelet {
+ public:
+  ~FusionNodelet() override {
+    stopWaiting();
+    for (ros::Subscriber* topic : {&rejected_, &info_, &color_, &depth_, &mask_}) topic->shutdown();
+    save_service_.shutdown();
+    reset_service_.shutdown();
+    worker_.reset();
+    if (!saver_ || !saver_->isOn()) return;
+    const std::string said = saver_->tryToSave(mapper_->map(), trajectory_);
+    // The log is closed already when the whole manager ends.
+    std::printf("%s: %s\n", getName().c_str(), said.c_str());
+    std::fflush(stdout);
+  }
+
+ private:
+  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image>;
+
+  void start() override {
+    ros::NodeHandle& handle = getNodeHandle();
+    Parameters parameters(getPrivateNodeHandle());
+    const posefusion::Config config = parameters.config({"tracking", "map"});
+    const PoseOutputSettings poses = readPoseOutput(parameters);
+    map_frame_ = poses.map_frame;
+    const bool lossless = parameters.flag("lossless", false);
+    const int queue = parameters.integer("queue_size", 3, {1, 10000});
+    saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
+    map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
+    report(parameters);
+
+    mapper_ = std::make_unique<posefusion::Mapper>(config);
+    pose_output_ = std::make_unique<PoseOutput>(handle, poses);
+    matcher_ =
+        std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });
+    worker_ = std::make_unique<Worker<Matcher::Set>>(
+        lossless ? 0 : queue, [this](const Matcher::Set& set) { process(set); });
+    rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
+    info_ =
+        handle.subscribe(topics::kSharpCameraInfo, kInternalQueue, &FusionNodelet::onInfo, this);
+    color_ = handle.subscribe(topics::kSharpColor, kInternalQueue, &FusionNodelet::onColor, this);
+    depth_ = handle.subscribe(topics::kStaticDepth, kInternalQueue, &FusionNodelet::onDepth, this);
+    mask_ = handle.subscribe(topics::kMask, kInternalQueue, &FusionNodelet::onMask, this);
+    // Services wait for the worker: in a queue of their own.
+    ros::NodeHandle& services = getMTPrivateNodeHandle();
+    save_service_ = services.advertiseService("save_map", &FusionNodelet::onSave, this);
+    reset_service_ = services.advertiseService("reset", &FusionNodelet::onReset, this);
+    whenReady([this] { return color_.getNumPublishers() > 0 && mask_.getNumPublishers() > 0; },
+              [this] { advertiseStatus(); });
+  }
+
+  void advertiseStatus() {
+    const std::lock_guard<std::mutex> lock(status_mutex_);
+    status_publisher_ = getNodeHandle().advertise<TrackingStatusMsg>(topics::kStatus, 1000);
+  }
+
+  void onInfo(const sensor_msgs::CameraInfoConstPtr& info) { matcher_->add<0>(info); }
+  void onColor(const sensor_msgs::ImageConstPtr& image) { matcher_->add<1>(image); }
+  void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
+  void onMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<3>(image); }
+
+  void onSet(const Matcher::Set& set) {
+    if (const auto dropped = worker_->push(set)) {
+      reject(std::get<1>(*dropped)->header, TrackingStatusMsg::DROPPED,
+             "dropped: fusion fell behind");
+    }
+  }
+
+  /// A frame that another stage, or this one, has given up.
+  void onRejected(const TrackingStatusMsg::ConstPtr& rejected) {
+    worker_->post([this, rejected] {
+      publishStatus(mapper_->skip(0, FrameOutcome::bad_input), rejected->header.stamp,
+                    rejected->reason, rejected->outcome);
+    });
+  }
+
+  /// In the worker.
+  void process(const Matcher::Set& set) {
+    const std_msgs::Header& header = std::get<1>(set)->header;
+    guarded(header, [&] { fuse(set); });
+    last_ = header.stamp;
+    map_output_->publishView(mapper_->view(), last_, false);  // always: the segmenter may wait
+  }
+
+  void fuse(const Matcher::Set& set) {
+    const auto& [info, color, depth, mask] = set;
+    if (color->header.stamp < last_) startAnew();
+    const posefusion::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    const cv::Mat people = cv_bridge::toCvShare(mask)->image;
+    const FrameStatus status =
+        mapper_->process(frame, cv::countNonZero(people) > 0 ? people : cv::Mat());
+    if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
+    std::string reason = reasonOf(status);
+    if (status.outcome == FrameOutcome::fused) {
+      trajectory_.push_back({status.stamp_ns, status.T_map_camera});
+      reason = pose_output_->publish(color->header, status);
+      if (!reason.empty()) reason = "fused, but no pose published: " + reason;
+    }
+    if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
+    map_output_->publishSurfels(mapper_->map(), color->header.stamp, pose_output_->mapFromStart());
+    publishStatus(status, color->header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
+  }
+
+  void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
+                     std::uint8_t outcome) {
+    std_msgs::Header header;
+    header.stamp = stamp;
+    header.frame_id = map_frame_;
+    TrackingStatusMsg message =
+        toMessage(status, header,
+                  pose_output_->mapFromStart().value_or(bodyFromOptical()) * status.T_map_camera);
+    message.outcome = outcome;
+    message.reason = reason;
+    const std::lock_guard<std::mutex> lock(status_mutex_);
+    if (status_publisher_) status_publisher_.publish(message);
+  }
+
+  /// The bag is played again: what there was is kept in a folder of its own.
+  void startAnew() {
+    if (saver_->isOn() && !trajectory_.empty()) {
+      NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
+    }
+    clear();
+  }
+
+  void clear() {
+    mapper_->reset();
+    pose_output_->reset();
+    map_output_->reset();
+    trajectory_.clear();
+  }
+
+  std::string save() { return saver_->save(mapper_->map(), trajectory_); }
+
+  bool onSave(Trigger::Request&, Trigger::Response& response) {
+    return answer([this] { return save(); }, response);
+  }
+
+  bool onReset(Trigger::Request&, Trigger::Response& response) {
+    const auto task = [this] {
+      clear();
+      map_output_->publishView(mapper_->view(), last_, true);
+      return std::string("the map is empty, the next frame begins a new one");
+    };
+    return answer(task, response);
+  }
+
+  bool answer(const std::function<std::string()>& task, Trigger::Response& response) {
+    answerTrigger([this](const auto& work) { return worker_->post(work); }, task, response);
+    NODELET_INFO("%s", response.message.c_str());
+    return true;
+  }
+
+  std::string map_frame_;
+  std::unique_ptr<MapSaver> saver_;
+  std::unique_ptr<posefusion::Mapper> mapper_;
+  posefusion::Trajectory trajectory_;
+  ros::Time last_;  // the newest frame
+  std::unique_ptr<MapOutput> map_output_;
+  std::unique_ptr<PoseOutput> pose_output_;
+  std::mutex status_mutex_;  // guards status_publisher_, which is advertised late
+  ros::Publisher status_publisher_;
+  std::unique_ptr<Matcher> matcher_;
+  std::unique_ptr<Worker<Matcher::Set>> worker_;
+  ros::Subscriber rejected_, info_, color_, depth_, mask_;
+  ros::ServiceServer save_service_, reset_service_;
+};
+
+}  // namespace posefusion_ros
+
+PLUGINLIB_EXPORT_CLASS(posefusion_ros::FusionNodelet, nodelet::Nodelet)

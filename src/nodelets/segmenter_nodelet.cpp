@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <visualization_msgs/MarkerArray.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <boost/make_shared.hpp>
+#include <memory>
+
+#include "posefusion/io/people_picture.hpp"
+#include "posefusion/segmentation/segmenter.hpp"
+#include "posefusion_ros/background.hpp"
+#include "posefusion_ros/chain_nodelet.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/exact_matcher.hpp"
+#include "posefusion_ros/model_view.hpp"
+#include "posefusion_ros/names.hpp"
+#include "posefusion_ros/skeleton_markers.hpp"
+#include "posefusion_ros/transforms.hpp"
+#include "posefusion_ros/worker.hpp"
+
+namespace posefusion_ros {
+
+using sensor_msgs::CameraInfo;
+using sensor_msgs::Image;
+
+constexpr std::chrono::milliseconds kViewPatience(5000);
+
+/// Takes people out of the depth. Lossless, each frame is compared with the map as it was after the
+/// frame before it; live, with the newest view of the map.
+class SegmenterNodelet : public ChainNodelet {
+ public:
+  ~SegmenterNodelet() override {
+    stopWaiting();
+    background_.stop();
+  }
+
+ private:
+  using Matcher = ExactMatcher<CameraInfo, Image, Image, PeopleMsg>;
+
+  void start() override {
+    Parameters parameters(getPrivateNodeHandle());
+    segmenter_ = std::make_unique<posefusion::PeopleSegmenter>(
+        parameters.config({"segmentation"}).segmentation);
+    lossless_ = parameters.flag("lossless", false);
+    up_frame_ = plainFrame(parameters.text("up_frame", ""));
+    const int queue = parameters.integer("queue_size", 3, {1, 10000});
+    const double tf_timeout_s = parameters.number("tf_timeout_s", 0.1, {0.0, 10.0});
+    report(parameters);
+    if (!up_frame_.empty()) lookup_ = std::make_unique<TransformLookup>(tf_timeout_s);
+
+    matcher_ =
+        std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });
+    worker_ = std::make_unique<Worker<Matcher::Set>>(
+        lossless_ ? 0 : queue, [this](const Matcher::Set& set) {
+          guarded(std::get<2>(set)->header, [&] { segment(set); });
+        });
+    ros::NodeHandle& handle = getNodeHandle();
+    view_ = handle.subscribe(topics::kModelView, kInternalQueue, &SegmenterNodelet::onView, this);
+    info_ =
+        handle.subscribe(topics::kSharpCameraInfo, kInternalQueue, &SegmenterNodelet::onInfo, this);
+    depth_ =
+        handle.subscribe(topics::kSharpDepth, kInternalQueue, &SegmenterNodelet::onDepth, this);
+    color_ =
+        handle.subscribe(topics::kSharpColor, kInternalQueue, &SegmenterNodelet::onColor, this);
+    people_ = handle.subscribe(topics::kPeople, kInternalQueue, &SegmenterNodelet::onPeople, this);
+    whenReady([this] { return color_.getNumPublishers() > 0 && people_.getNumPublishers() > 0; },
+              [this] { advertise(); });
+  }
+
+  void advertise() {
+    ros::NodeHandle& handle = getNodeHandle();
+    const std::lock_guard<std::mutex> lock(publisher_mutex_);
+    used_publisher_ = handle.advertise<PeopleMsg>(topics::kPeopleUsed, kInternalQueue);
+    marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>(topics::kSkeletons, 2);
+    picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
+    depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
+    mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
+  }
+
+  void onView(const ModelViewMsg::ConstPtr& view) { background_.set(view); }
+  void onInfo(const sensor_msgs::CameraInfoConstPtr& info) { matcher_->add<0>(info); }
+  void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<1>(image); }
+  void onColor(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
+  void onPeople(const PeopleMsg::ConstPtr& people) { matcher_->add<3>(people); }
+
+  void onSet(const Matcher::Set& set) {
+    if (const auto dropped = worker_->push(set)) {
+      reject(std::get<2>(*dropped)->header, TrackingStatusMsg::DROPPED,
+             "dropped: the segmenter fell behind");
+    }
+  }
+
+  void segment(const Matcher::Set& set) {
+    const auto& [info, depth, color, people] = set;
+    const std_msgs::Header& header = color->header;
+    if (background_.takeResets() > 0 || header.stamp < last_) {
+      segmenter_->reset();
+      last_ = ros::Time();
+    }
+    const ModelViewMsg::ConstPtr view = viewFor(header.stamp);
+    if (background_.stopped()) return;
+    const posefusion::ModelView model = view ? fromMessage(view) : posefusion::ModelView();
+    const posefusion::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    const posefusion::Segmentation result = segmenter_->segment(
+        frame, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
+    last_ = header.stamp;
+    publish(frame, result, depth, header);
+  }
+
+  /// Lossless: the view after the frame before this one, however long it takes.
+  ModelViewMsg::ConstPtr viewFor(const ros::Time& stamp) {
+    if (!lossless_) return background_.newest();
+    if (last_.isZero()) return nullptr;
+    while (!background_.waitFor(last_, kViewPatience) && !background_.stopped()) {
+      NODELET_WARN(
+          "frame %u.%09u waits for the map's view of the frame before it (is fusion "
+          "running?)",
+          stamp.sec, stamp.nsec);
+    }
+    return background_.newest();
+  }
+
+  std::optional<Eigen::Vector3d> upOf(const std_msgs::Header& header) const {
+    if (!lookup_) return std::nullopt;
+    std::string error;
+    const auto T = lookup_->find(plainFrame(header.frame_id), up_frame_, header.stamp, error);
+    if (!T) {
+      NODELET_WARN_THROTTLE(5.0, "gravity unknown, the camera counts as level: %s", error.c_str());
+      return std::nullopt;
+    }
+    return T->linear() * Eigen::Vector3d::UnitZ();
+  }
+
+  void publish(const posefusion::RgbdFrame& frame, const posefusion::Segmentation& result,
+               const sensor_msgs::ImageConstPtr& depth, const std_msgs::Header& header) {
+    const std::lock_guard<std::mutex> lock(publisher_mutex_);
+    if (!mask_publisher_) {
+      reject(header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");
+      return;
+    }
+    used_publisher_.publish(boost::make_shared<const PeopleMsg>(toMessage(result.people, header)));
+    if (marker_publisher_.getNumSubscribers() > 0) {
+      marker_publisher_.publish(toMarkers(result.people, frame, header));
+    }
+    if (picture_publisher_.getNumSubscribers() > 0) {
+      picture_publisher_.publish(
+          toImage(posefusion::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
+    }
+    const bool nobody = result.static_depth.data == frame.depth.data;
+    depth_publisher_.publish(
+        nobody ? depth
+               : sensor_msgs::ImageConstPtr(toImage(result.static_depth, depth->encoding, header)));
+    const cv::Mat mask =
+        result.mask.empty() ? cv::Mat(cv::Mat::zeros(frame.depth.size(), CV_8UC1)) : result.mask;
+    mask_publisher_.publish(sensor_msgs::ImageConstPtr(toImage(mask, "mono8", header)));
+  }
+
+  bool lossless_ = false;
+  std::string up_frame_;
+  std::unique_ptr<TransformLookup> lookup_;
+  std::unique_ptr<posefusion::PeopleSegmenter> segmenter_;
+  ros::Time last_;  // the frame before; zero at the start
+  Background background_;
+  std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
+  ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
+      mask_publisher_;
+  std::unique_ptr<Matcher> matcher_;
+  std::unique_ptr<Worker<Matcher::Set>> worker_;
+  // Last, so that they end first: their callbacks use the rest.
+  ros::Subscriber view_, info_, depth_, color_, people_;
+};
+
+}  // namespace posefusion_ros
+
+PLUGINLIB_EXPORT_CLASS(posefusion_ros::SegmenterNodelet, nodelet::Nodelet)

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/bag_source.hpp"
+
+#include <geometry_msgs/PoseStamped.h>
+#include <rosbag/view.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "bag_images.hpp"
+#include "bag_topics.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/camera_file.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "stamp_pairer.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using posefusion::InputError;
+using posefusion::SourceFrame;
+
+/// Runs `read`, and turns what rosbag throws into an InputError that names the bag.
+template <typename Read>
+auto reading(const std::string& path, const Read& read) {
+  const std::string advice = "; if it was cut or not closed, 'rosbag reindex " + path + "' helps";
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  } catch (const rosbag::BagUnindexedException&) {
+    throw InputError(path + ": the bag has no index" + advice);
+  } catch (const std::exception& error) {
+    throw InputError(path + ": the bag cannot be read: " + error.what() + advice);
+  }
+}
+
+/// What a topic gives while its stamps grow.
+struct Stream {
+  std::int64_t latest_ns = std::numeric_limits<std::int64_t>::min();
+  std::size_t going_back = 0;
+
+  bool accept(std::int64_t stamp_ns) {
+    if (stamp_ns <= latest_ns) {
+      ++going_back;
+      return false;
+    }
+    latest_ns = stamp_ns;
+    return true;
+  }
+};
+
+class BagSource : public posefusion::FrameSource {
+ public:
+  BagSource(const std::string& path, const InputOptions& options)
+      : path_(path),
+        pairer_(static_cast<std::int64_t>(std::llround(options.max_pair_difference_s * 1e9))) {
+    reading(path_, [&] {
+      bag_.open(path_, rosbag::bagmode::Read);
+      topics_ = chooseTopics(topicsOf(bag_), options.topics);
+      rosbag::View colors(bag_, rosbag::TopicQuery(topics_.color));
+      frame_count_ = colors.size();
+      if (frame_count_ == 0) throw InputError("topic " + topics_.color + " has no message");
+      camera_ = options.camera_file.empty() ? recordedCamera()
+                                            : posefusion::loadCamera(options.camera_file).camera;
+      view_.addQuery(bag_, rosbag::TopicQuery({topics_.color, topics_.depth}));
+      position_ = view_.begin();
+    });
+  }
+
+  std::size_t frameCount() const override { return frame_count_; }
+
+  std::optional<SourceFrame> next() override {
+    while (true) {
+      if (auto pair = pairer_.next()) return decode(pair->first, pair->second);
+      if (position_ == view_.end()) {
+        if (finished_) return std::nullopt;
+        finished_ = true;
+        pairer_.finish();
+        continue;
+      }
+      auto defect = reading(path_, [&] { return readMessage(); });
+      if (defect) return defect;
+    }
+  }
+
+  posefusion::RecordedPeople people() override {
+    posefusion::RecordedPeople recorded;
+    forEach<PeopleMsg>(topics_.people, [&](const PeopleMsg& message) {
+      recorded[toNs(message.header.stamp)] = fromMessage(message);
+    });
+    return recorded;
+  }
+
+  posefusion::Trajectory truth() override {
+    posefusion::Trajectory truth;
+    forEach<geometry_msgs::PoseStamped>(topics_.truth, [&](const auto& message) {
+      const auto& p = message.pose.position;
+      const auto& q = message.pose.orientation;
+      posefusion::StampedPose pose;
+      pose.stamp_ns = toNs(message.header.stamp);
+      pose.T_world_camera.translation() = Eigen::Vector3d(p.x, p.y, p.z);
+      pose.T_world_camera.linear() =
+          Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+      truth.push_back(pose);
+    });
+    std::stable_sort(truth.begin(), truth.end(),
+                     [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+    return truth;
+  }
+
+  posefusion::InputReport report() const override {
+    posefusion::InputReport report;
+    report.color_without_depth = pairer_.unpairedFirst();
+    report.depth_without_color = pairer_.unpairedSecond();
+    if (depth_.going_back > 0) {
+      report.notes.push_back(std::to_string(depth_.going_back) +
+                             " depth images have stamps that go back: they are left out");
+    }
+    return report;
+  }
+
+ private:
+  posefusion::PinholeCamera recordedCamera() {
+    if (topics_.camera_info.empty()) {
+      throw InputError("there is no camera_info for " + topics_.color +
+                       ", expected a topic beside it, or a camera file (--camera)");
+    }
+    rosbag::View infos(bag_, rosbag::TopicQuery(topics_.camera_info));
+    const auto info = infos.size() > 0 ? infos.begin()->instantiate<sensor_msgs::CameraInfo>()
+                                       : sensor_msgs::CameraInfo::ConstPtr();
+    if (!info) throw InputError("topic " + topics_.camera_info + " has no message");
+    try {
+      return toCamera(*info, topics_.color.find("rect") != std::string::npos);
+    } catch (const InputError& error) {
+      throw InputError("topic " + topics_.camera_info + ": " + error.what());
+    }
+  }
+
+  /// Takes in the next message; a colour image whose stamp goes back is a frame with a defect.
+  std::optional<SourceFrame> readMessage() {
+    const rosbag::MessageInstance message = *position_;
+    const bool is_color = message.getTopic() == topics_.color;
+    auto image = is_color ? readColor(message) : readDepth(message);
+    ++position_;
+    if (!image) return std::nullopt;
+    Stream& stream = is_color ? color_ : depth_;
+    const std::int64_t latest_ns = stream.latest_ns;
+    if (stream.accept(image->stamp_ns)) {
+      is_color ? pairer_.addFirst(std::move(*image)) : pairer_.addSecond(std::move(*image));
+      return std::nullopt;
+    }
+    if (!is_color) return std::nullopt;
+    SourceFrame out = emptyFrame(image->stamp_ns);
+    out.defect = "stamp " + posefusion::formatStamp(image->stamp_ns) + " is not later than " +
+                 posefusion::formatStamp(latest_ns) + " before it";
+    return out;
+  }
+
+  SourceFrame emptyFrame(std::int64_t stamp_ns) const {
+    SourceFrame out;
+    out.frame.stamp_ns = stamp_ns;
+    out.frame.camera = camera_;
+    return out;
+  }
+
+  SourceFrame decode(const BagImage& color, const BagImage& depth) const {
+    SourceFrame out = emptyFrame(color.stamp_ns);
+    try {
+      out.frame.color = color.decode();
+      out.frame.depth = depth.decode();
+      out.defect = posefusion::defectOf(out.frame);
+    } catch (const std::exception& error) {
+      out.defect = error.what();
+    }
+    if (out.defect.empty()) return out;
+    out.defect = "frame " + posefusion::formatStamp(color.stamp_ns) + ": " + out.defect;
+    out.frame.color.release();
+    out.frame.depth.release();
+    return out;
+  }
+
+  template <typename Message, typename Use>
+  void forEach(const std::string& topic, const Use& use) {
+    if (topic.empty()) return;
+    reading(path_, [&] {
+      rosbag::View view(bag_, rosbag::TopicQuery(topic));
+      for (const auto& instance : view) {
+        if (const auto message = instance.template instantiate<Message>()) use(*message);
+      }
+    });
+  }
+
+  std::string path_;
+  rosbag::Bag bag_;
+  BagTopics topics_;
+  rosbag::View view_;
+  rosbag::View::iterator position_;
+  StampPairer<BagImage> pairer_;
+  Stream color_, depth_;
+  posefusion::PinholeCamera camera_;
+  std::size_t frame_count_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<posefusion::FrameSource> openBag(const std::string& path,
+                                                 const InputOptions& options) {
+  return std::make_unique<BagSource>(path, options);
+}
+
+std::unique_ptr<posefusion::FrameSource> openInput(const std::string& path,
+                                                   const InputOptions& options) {
+  if (!std::filesystem::exists(path)) {
+    throw InputError(path + ": does not exist, expected a TUM folder or a bag");
+  }
+  if (std::filesystem::is_directory(path)) {
+    return posefusion::openTumFolder(path, options.camera_file);
+  }
+  return openBag(path, options);
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/conversions.hpp"
+
+#include <sensor_msgs/image_encodings.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "posefusion/core/error.hpp"
+
+namespace posefusion_ros {
+
+namespace enc = sensor_msgs::image_encodings;
+using posefusion::InputError;
+
+namespace {
+
+/// The message's bytes as they are.
+cv::Mat share(const sensor_msgs::ImageConstPtr& image) {
+  if (!image || image->data.empty()) return {};
+  try {
+    return cv_bridge::toCvShare(image)->image;
+  } catch (const cv_bridge::Exception& error) {
+    throw InputError(std::string("image message: ") + error.what());
+  }
+}
+
+/// Focal lengths and centre from K or P, in pixels of the full sensor.
+void setIntrinsics(const sensor_msgs::CameraInfo& info, bool rectified,
+                   posefusion::PinholeCamera& camera) {
+  const bool projection = rectified && info.P[0] > 0;
+  camera.fx = projection ? info.P[0] : info.K[0];
+  camera.cx = projection ? info.P[2] : info.K[2];
+  camera.fy = projection ? info.P[5] : info.K[4];
+  camera.cy = projection ? info.P[6] : info.K[5];
+}
+
+void setDistortion(const sensor_msgs::CameraInfo& info, posefusion::PinholeCamera& camera) {
+  const auto is_used = [](double d) { return d != 0.0; };
+  if (std::none_of(info.D.begin(), info.D.end(), is_used)) return;
+  const std::size_t known = camera.distortion.size();
+  const bool longer =
+      info.D.size() > known && std::any_of(info.D.begin() + known, info.D.end(), is_used);
+  if ((!info.distortion_model.empty() && info.distortion_model != "plumb_bob" &&
+       info.distortion_model != "rational_polynomial") ||
+      longer) {
+    throw InputError("camera_info: distortion model '" + info.distortion_model + "' with " +
+                     std::to_string(info.D.size()) +
+                     " coefficients, expected plumb_bob with 5 (rectify with image_proc)");
+  }
+  std::copy_n(info.D.begin(), std::min(known, info.D.size()), camera.distortion.begin());
+}
+
+}  // namespace
+
+cv::Mat toColor(const sensor_msgs::ImageConstPtr& image) {
+  const cv::Mat pixels = share(image);
+  if (pixels.empty() || image->encoding == enc::RGB8) return pixels;
+  int code = 0;
+  if (image->encoding == enc::BGR8) {
+    code = cv::COLOR_BGR2RGB;
+  } else if (image->encoding == enc::RGBA8) {
+    code = cv::COLOR_RGBA2RGB;
+  } else if (image->encoding == enc::BGRA8) {
+    code = cv::COLOR_BGRA2RGB;
+  } else {
+    throw InputError("colour image: encoding '" + image->encoding +
+                     "', expected rgb8, bgr8, rgba8 or bgra8");
+  }
+  cv::Mat rgb;
+  cv::cvtColor(pixels, rgb, code);
+  return rgb;
+}
+
+cv::Mat toDepth(const sensor_msgs::ImageConstPtr& image) {
+  const cv::Mat pixels = share(image);
+  if (pixels.empty() || image->encoding == enc::TYPE_16UC1 || image->encoding == enc::MONO16 ||
+      image->encoding == enc::TYPE_32FC1) {
+    return pixels;
+  }
+  throw InputError("depth image: encoding '" + image->encoding +
+                   "', expected 16UC1 (millimetres) or 32FC1 (metres)");
+}
+
+posefusion::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified) {
+  posefusion::PinholeCamera camera;
+  setIntrinsics(info, rectified, camera);
+  const int bin_x = std::max(1, static_cast<int>(info.binning_x));
+  const int bin_y = std::max(1, static_cast<int>(info.binning_y));
+  const bool full = info.roi.width == 0 || info.roi.height == 0;
+  camera.width = static_cast<int>(full ? info.width : info.roi.width) / bin_x;
+  camera.height = static_cast<int>(full ? info.height : info.roi.height) / bin_y;
+  camera.fx /= bin_x;
+  camera.fy /= bin_y;
+  camera.cx = (camera.cx - info.roi.x_offset) / bin_x;
+  camera.cy = (camera.cy - info.roi.y_offset) / bin_y;
+  if (!rectified) setDistortion(info, camera);
+  try {
+    posefusion::validate(camera);
+  } catch (const InputError& error) {
+    throw InputError(std::string("camera_info: ") + error.what());
+  }
+  return camera;
+}
+
+sensor_msgs::CameraInfo toCameraInfo(const posefusion::PinholeCamera& camera,
+                                     const std_msgs::Header& header) {
+  sensor_msgs::CameraInfo info;
+  info.header = header;
+  info.width = camera.width;
+  info.height = camera.height;
+  info.distortion_model = "plumb_bob";
+  info.D.assign(camera.distortion.begin(), camera.distortion.end());
+  info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
+posefusion::RgbdFrame toFrame(const sensor_msgs::ImageConstPtr& color,
+                              const sensor_msgs::ImageConstPtr& depth,
+                              const posefusion::PinholeCamera& camera) {
+  posefusion::RgbdFrame frame;
+  frame.stamp_ns = toNs(color->header.stamp);
+  frame.color = toColor(color);
+  frame.depth = toDepth(depth);
+  frame.camera = camera;
+  const std::string defect = posefusion::defectOf(frame);
+  if (!defect.empty()) throw InputError(defect);
+  return frame;
+}
+
+sensor_msgs::ImagePtr toImage(const cv::Mat& pixels, const std::string& encoding,
+                              const std_msgs::Header& header) {
+  return cv_bridge::CvImage(header, encoding, pixels).toImageMsg();
+}
+
+sensor_msgs::ImagePtr toDepthImage(const posefusion::RgbdFrame& frame,
+                                   const std_msgs::Header& header) {
+  if (frame.depth.type() == CV_32FC1) return toImage(frame.depth, enc::TYPE_32FC1, header);
+  if (frame.depth_unit_m == 1e-3) return toImage(frame.depth, enc::TYPE_16UC1, header);
+  // Multiplied as depthInMetres() does it, so that a replay sees the same numbers.
+  cv::Mat metres(frame.depth.size(), CV_32FC1);
+  const auto unit = static_cast<float>(frame.depth_unit_m);
+  for (int v = 0; v < metres.rows; ++v) {
+    const auto* in = frame.depth.ptr<std::uint16_t>(v);
+    std::transform(in, in + metres.cols, metres.ptr<float>(v),
+                   [unit](std::uint16_t z) { return static_cast<float>(z) * unit; });
+  }
+  return toImage(metres, enc::TYPE_32FC1, header);
+}
+
+PeopleMsg toMessage(const posefusion::People& people, const std_msgs::Header& header) {
+  PeopleMsg message;
+  message.header = header;
+  message.detected = static_cast<unsigned char>(people.detected);
+  message.people.resize(people.people.size());
+  for (std::size_t i = 0; i < people.people.size(); ++i) {
+    const posefusion::Person& from = people.people[i];
+    message.people[i].score = from.score;
+    for (int j = 0; j < posefusion::kJointCount; ++j) {
+      KeypointMsg& joint = message.people[i].joints[j];
+      joint.u = from.joints[j].u;
+      joint.v = from.joints[j].v;
+      joint.p = from.joints[j].p;
+    }
+  }
+  return message;
+}
+
+posefusion::People fromMessage(const PeopleMsg& message) {
+  posefusion::People people;
+  people.stamp_ns = toNs(message.header.stamp);
+  people.detected = message.detected != 0;
+  people.people.resize(message.people.size());
+  for (std::size_t i = 0; i < message.people.size(); ++i) {
+    people.people[i].score = message.people[i].score;
+    for (int j = 0; j < posefusion::kJointCount; ++j) {
+      const KeypointMsg& from = message.people[i].joints[j];
+      people.people[i].joints[j] = {from.u, from.v, from.p};
+    }
+  }
+  return people;
+}
+
+TrackingStatusMsg toMessage(const posefusion::FrameStatus& status, const std_msgs::Header& header,
+                            const Eigen::Isometry3d& T_map_camera) {
+  TrackingStatusMsg message;
+  message.header = header;
+  message.outcome = static_cast<std::uint8_t>(status.outcome);
+  message.state = static_cast<std::uint8_t>(status.state);
+  message.reason = reasonOf(status);
+  message.pose = toPose(T_map_camera);
+  const posefusion::TrackingResult& tracking = status.tracking;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance.data()) =
+      tracking.covariance;
+  message.candidates = static_cast<std::uint32_t>(std::max(0, tracking.candidates));
+  message.inliers = static_cast<std::uint32_t>(std::max(0, tracking.inliers));
+  message.geometric_rmse_m = tracking.geometric_rmse_m;
+  message.photometric_rmse = tracking.photometric_rmse;
+  message.surfels = status.surfels;
+  message.tracking_ms = status.tracking_ms;
+  message.fusion_ms = status.fusion_ms;
+  return message;
+}
+
+geometry_msgs::Pose toPose(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  geometry_msgs::Pose pose;
+  pose.position.x = T.translation().x();
+  pose.position.y = T.translation().y();
+  pose.position.z = T.translation().z();
+  pose.orientation.x = q.x();
+  pose.orientation.y = q.y();
+  pose.orientation.z = q.z();
+  pose.orientation.w = q.w();
+  return pose;
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/map_saver.hpp"
+
+#include <filesystem>
+
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/map_file.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+std::string saveInto(const std::filesystem::path& folder, const posefusion::SurfelMap& map,
+                     const posefusion::Trajectory& trajectory) {
+  if (trajectory.empty()) return "nothing to save: no frame was fused";
+  posefusion::makeFolder(folder.string());
+  posefusion::saveTrajectory(
+      (folder / "trajectory.txt").string(), trajectory,
+      "pose of the camera (optical frame: z forward, x right, y down) in the map");
+  const std::size_t surfels = posefusion::saveMap((folder / "map.ply").string(), map);
+  return "saved map.ply (" + std::to_string(surfels) + " surfels) and trajectory.txt (" +
+         std::to_string(trajectory.size()) + " poses) in " +
+         std::filesystem::absolute(folder).string();
+}
+
+}  // namespace
+
+MapSaver::MapSaver(const std::string& folder)
+    : folder_(folder.empty() ? "posefusion_output" : folder), is_on_(!folder.empty()) {}
+
+std::string MapSaver::save(const posefusion::SurfelMap& map,
+                           const posefusion::Trajectory& trajectory) {
+  return saveInto(folder_, map, trajectory);
+}
+
+std::string MapSaver::tryToSave(const posefusion::SurfelMap& map,
+                                const posefusion::Trajectory& trajectory) {
+  try {
+    return save(map, trajectory);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+std::string MapSaver::saveBeforeReset(const posefusion::SurfelMap& map,
+                                      const posefusion::Trajectory& trajectory) {
+  return saveInto(std::filesystem::path(folder_) / ("before_reset_" + std::to_string(++resets_)),
+                  map, trajectory);
+}
+
+}  // namespace posefusion_ros

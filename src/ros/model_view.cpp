@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/model_view.hpp"
+
+#include <sensor_msgs/image_encodings.h>
+
+#include <boost/make_shared.hpp>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion_ros/conversions.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+using sensor_msgs::image_encodings::TYPE_32FC1;
+using sensor_msgs::image_encodings::TYPE_8UC1;
+
+void copyPlane(const cv::Mat& plane, const std_msgs::Header& header, sensor_msgs::Image& image) {
+  const std::string encoding = plane.type() == CV_8UC1 ? TYPE_8UC1 : TYPE_32FC1;
+  cv_bridge::CvImage(header, encoding, plane).toImageMsg(image);
+}
+
+cv::Mat planeOf(const sensor_msgs::Image& image, const ModelViewMsg::ConstPtr& owner,
+                const std::string& encoding = TYPE_32FC1) {
+  try {
+    if (image.encoding == encoding) return cv_bridge::toCvShare(image, owner)->image;
+  } catch (const cv_bridge::Exception& error) {
+    throw posefusion::InputError(std::string("model view: ") + error.what());
+  }
+  throw posefusion::InputError("model view: encoding '" + image.encoding + "', expected " +
+                               encoding);
+}
+
+}  // namespace
+
+ModelViewMsg::Ptr toMessage(const posefusion::ModelView& view, const std_msgs::Header& header) {
+  auto message = boost::make_shared<ModelViewMsg>();
+  message->header = header;
+  if (view.empty()) return message;
+  message->camera = toCameraInfo(view.camera, header);
+  Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
+  copyPlane(view.depth_m, header, message->depth);
+  copyPlane(view.normal_x, header, message->normal_x);
+  copyPlane(view.normal_y, header, message->normal_y);
+  copyPlane(view.normal_z, header, message->normal_z);
+  copyPlane(view.intensity, header, message->intensity);
+  copyPlane(view.stable, header, message->stable);
+  return message;
+}
+
+posefusion::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
+  posefusion::ModelView view;
+  if (message->depth.data.empty()) return view;
+  view.camera = toCamera(message->camera, false);
+  view.T_map_camera.matrix().topRows<3>() =
+      Eigen::Map<const RowMajor34>(message->map_from_camera.data());
+  view.depth_m = planeOf(message->depth, message);
+  view.normal_x = planeOf(message->normal_x, message);
+  view.normal_y = planeOf(message->normal_y, message);
+  view.normal_z = planeOf(message->normal_z, message);
+  view.intensity = planeOf(message->intensity, message);
+  view.stable = planeOf(message->stable, message, TYPE_8UC1);
+  return view;
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/pose_output.hpp"
+
+#include <geometry_msgs/PoseStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <tf2_eigen/tf2_eigen.h>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/names.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+constexpr int kQueue = 10;
+// The path keeps ten poses a second: a whole day stays small enough to be sent.
+const ros::Duration kPathStep(0.1);
+
+}  // namespace
+
+struct PoseOutput::Links {
+  std::string base;
+  Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();
+};
+
+PoseOutputSettings readPoseOutput(Parameters& parameters) {
+  PoseOutputSettings settings;
+  settings.publish_tf = parameters.flag("publish_tf", settings.publish_tf);
+  settings.map_frame = plainFrame(parameters.text("map_frame", frames::kMap));
+  settings.odom_frame = plainFrame(parameters.text("odom_frame", ""));
+  settings.base_frame = plainFrame(parameters.text("base_frame", ""));
+  settings.tf_timeout_s = parameters.number("tf_timeout_s", settings.tf_timeout_s, {0.0, 10.0});
+  settings.path_period_s =
+      parameters.number("path_period_s", settings.path_period_s, {0.0, 3600.0});
+  return settings;
+}
+
+PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings)
+    : settings_(settings),
+      odometry_(handle.advertise<nav_msgs::Odometry>(topics::kOdometry, kQueue)),
+      pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kQueue)),
+      path_publisher_(handle.advertise<nav_msgs::Path>(topics::kPath, 1, true)) {
+  if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
+    lookup_ = std::make_unique<TransformLookup>(settings.tf_timeout_s);
+  }
+  reset();
+}
+
+void PoseOutput::reset() {
+  T_map_start_.reset();
+  T_map_base_before_.reset();
+  path_.poses.clear();
+  path_.header.frame_id = settings_.map_frame;
+  path_sent_ = ros::Time();
+}
+
+bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& error) const {
+  const std::string camera = plainFrame(image.frame_id);
+  links.base = settings_.base_frame.empty() ? camera : settings_.base_frame;
+  if (links.base != camera) {
+    const auto T = lookup_->find(links.base, camera, image.stamp, error);
+    if (!T) return false;
+    links.T_base_camera = *T;
+  }
+  if (!settings_.odom_frame.empty()) {
+    const auto T = lookup_->find(settings_.odom_frame, links.base, image.stamp, error);
+    if (!T) return false;
+    links.T_odom_base = *T;
+  }
+  return true;
+}
+
+std::string PoseOutput::publish(const std_msgs::Header& image,
+                                const posefusion::FrameStatus& status) {
+  Links links;
+  std::string error;
+  if (!look(image, links, error)) return error;
+  const bool has_robot = !settings_.base_frame.empty() || !settings_.odom_frame.empty();
+  if (!T_map_start_) {
+    const Eigen::Isometry3d T_map_camera =
+        has_robot ? links.T_odom_base * links.T_base_camera : bodyFromOptical();
+    T_map_start_ = T_map_camera * status.T_map_camera.inverse();
+  }
+  const Eigen::Isometry3d T_map_camera = *T_map_start_ * status.T_map_camera;
+  const Eigen::Isometry3d T_map_base = T_map_camera * links.T_base_camera.inverse();
+  if (settings_.publish_tf) {
+    const bool has_odometry = !settings_.odom_frame.empty();
+    sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
+                  has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+  }
+  sendOdometry(image.stamp, links.base, T_map_base, status);
+  geometry_msgs::PoseStamped pose;
+  pose.header.stamp = image.stamp;
+  pose.header.frame_id = settings_.map_frame;
+  pose.pose = toPose(T_map_base);
+  pose_.publish(pose);
+  extendPath(pose);
+  return {};
+}
+
+void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
+                               const Eigen::Isometry3d& T) {
+  geometry_msgs::TransformStamped message = tf2::eigenToTransform(T);
+  message.header.stamp = stamp;
+  message.header.frame_id = settings_.map_frame;
+  message.child_frame_id = child;
+  broadcaster_.sendTransform(message);
+}
+
+void PoseOutput::sendOdometry(const ros::Time& stamp, const std::string& base,
+                              const Eigen::Isometry3d& T_map_base,
+                              const posefusion::FrameStatus& status) {
+  nav_msgs::Odometry odometry;
+  odometry.header.stamp = stamp;
+  odometry.header.frame_id = settings_.map_frame;
+  odometry.child_frame_id = base;
+  odometry.pose.pose = toPose(T_map_base);
+  // The tracker's covariance is in the camera's axes; ROS wants those of the map.
+  posefusion::Matrix6d rotation = posefusion::Matrix6d::Zero();
+  const Eigen::Matrix3d R = (*T_map_start_ * status.T_map_camera).linear();
+  rotation.topLeftCorner<3, 3>() = R;
+  rotation.bottomRightCorner<3, 3>() = R;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
+      rotation * status.tracking.covariance * rotation.transpose();
+  if (T_map_base_before_ && stamp > before_) {
+    const posefusion::Vector6d twist =
+        posefusion::logSe3(T_map_base_before_->inverse() * T_map_base) / (stamp - before_).toSec();
+    odometry.twist.twist.linear =
+        tf2::toMsg(Eigen::Vector3d(twist.head<3>()), odometry.twist.twist.linear);
+    odometry.twist.twist.angular =
+        tf2::toMsg(Eigen::Vector3d(twist.tail<3>()), odometry.twist.twist.angular);
+  }
+  odometry_.publish(odometry);
+  T_map_base_before_ = T_map_base;
+  before_ = stamp;
+}
+
+void PoseOutput::extendPath(const geometry_msgs::PoseStamped& pose) {
+  const ros::Time stamp = pose.header.stamp;
+  if (path_.poses.empty() || stamp - path_.poses.back().header.stamp >= kPathStep) {
+    path_.poses.push_back(pose);
+  }
+  if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.path_period_s) return;
+  path_.header.stamp = stamp;
+  path_sent_ = stamp;
+  if (path_publisher_.getNumSubscribers() > 0) path_publisher_.publish(path_);
+}
+
+}  // namespace posefusion_ros

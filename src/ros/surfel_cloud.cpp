@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/surfel_cloud.hpp"
+
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <cstring>
+
+namespace posefusion_ros {
+namespace {
+
+struct Point {
+  float x, y, z, rgb, nx, ny, nz, radius, confidence;
+};
+
+constexpr const char* kFields[] = {"x",        "y",        "z",      "rgb",       "normal_x",
+                                   "normal_y", "normal_z", "radius", "confidence"};
+static_assert(sizeof(Point) == sizeof(kFields) / sizeof(kFields[0]) * sizeof(float));
+
+float packed(float r, float g, float b) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint32_t>(std::lround(std::fmin(255.0F, std::fmax(0.0F, value))));
+  };
+  const std::uint32_t bits = byte(r) << 16 | byte(g) << 8 | byte(b);
+  float rgb = 0;
+  std::memcpy(&rgb, &bits, sizeof(rgb));
+  return rgb;
+}
+
+void describe(sensor_msgs::PointCloud2& cloud) {
+  for (const char* name : kFields) {
+    sensor_msgs::PointField field;
+    field.name = name;
+    field.offset = static_cast<std::uint32_t>(cloud.fields.size() * sizeof(float));
+    field.datatype = sensor_msgs::PointField::FLOAT32;
+    field.count = 1;
+    cloud.fields.push_back(field);
+  }
+  cloud.point_step = sizeof(Point);
+  cloud.height = 1;
+  cloud.is_dense = 1;
+}
+
+}  // namespace
+
+sensor_msgs::PointCloud2::Ptr toCloud(const posefusion::SurfelMap& map,
+                                      const Eigen::Isometry3d& T_map_start,
+                                      std::size_t max_points) {
+  const posefusion::SurfelArrays& s = map.surfels();
+  const std::size_t stable = map.stableCount();
+  const std::size_t step = max_points > 0 ? (stable + max_points - 1) / max_points : 1;
+  const Eigen::Isometry3f T = T_map_start.cast<float>();
+  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
+  describe(*cloud);
+  if (stable == 0) return cloud;
+  cloud->data.resize((stable + step - 1) / step * sizeof(Point));
+  std::size_t seen = 0, count = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (!map.isStable(i) || seen++ % step != 0) continue;
+    const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
+    const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
+    const Point point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
+                      n.x(),          n.y(), n.z(), s.radius[i],
+                      s.confidence[i]};
+    std::memcpy(&cloud->data[count++ * sizeof(Point)], &point, sizeof(Point));
+  }
+  cloud->width = static_cast<std::uint32_t>(count);
+  cloud->row_step = cloud->width * cloud->point_step;
+  return cloud;
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nodelet/loader.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <boost/make_shared.hpp>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "posefusion/synthetic/sequence.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/names.hpp"
+
+namespace posefusion_ros {
+
+/// Three messages of the camera.
+struct CameraMessages {
+  sensor_msgs::ImagePtr color, depth;
+  sensor_msgs::CameraInfoPtr info;
+};
+
+inline CameraMessages toMessages(const posefusion::RgbdFrame& frame) {
+  std_msgs::Header header;
+  header.stamp = toTime(frame.stamp_ns);
+  header.frame_id = frames::kOptical;
+  return {toImage(frame.color, "rgb8", header), toDepthImage(frame, header),
+          boost::make_shared<sensor_msgs::CameraInfo>(toCameraInfo(frame.camera, header))};
+}
+
+inline posefusion::SyntheticOptions smallSequence(int frames, bool figure) {
+  posefusion::SyntheticOptions options;
+  options.frames = frames;
+  options.figure = figure;
+  options.width = 320;
+  options.height = 240;
+  return options;
+}
+
+/// The four nodelets in this process, in a namespace of their own, and a camera that feeds them.
+class Chain {
+ public:
+  /// Sets a private parameter of all four; before load().
+  template <typename Value>
+  void set(const std::string& name, const Value& value) {
+    for (const auto& nodelet : kNodelets)
+      ros::param::set(space_ + "/" + nodelet + "/" + name, value);
+  }
+
+  explicit Chain(const std::string& space) : space_("/" + space), handle_(space_) {
+    set("lossless", true);
+    set("pose/detector", std::string("none"));
+    color_ = handle_.advertise<sensor_msgs::Image>(topics::kColor, 1000);
+    depth_ = handle_.advertise<sensor_msgs::Image>(topics::kDepth, 1000);
+    info_ = handle_.advertise<sensor_msgs::CameraInfo>(topics::kCameraInfo, 1000);
+    status_ = handle_.subscribe(topics::kStatus, 1000, &Chain::onStatus, this);
+  }
+
+  /// Loads the chain; true once it reports.
+  bool load() {
+    loader_ = std::make_unique<nodelet::Loader>(false);
+    for (const auto& nodelet : kNodelets) {
+      if (!loader_->load(space_ + "/" + nodelet, "posefusion/" + nodelet, {}, {})) return false;
+    }
+    return waitUntil(
+        [this] { return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0; });
+  }
+  void unload() { loader_.reset(); }
+
+  void send(const CameraMessages& m) {
+    if (m.info) info_.publish(sensor_msgs::CameraInfoConstPtr(m.info));
+    if (m.depth) depth_.publish(sensor_msgs::ImageConstPtr(m.depth));
+    if (m.color) color_.publish(sensor_msgs::ImageConstPtr(m.color));
+  }
+
+  /// Sends a frame and waits for its status.
+  TrackingStatusMsg process(const CameraMessages& m) {
+    const std::size_t before = statuses().size();
+    send(m);
+    if (!waitForStatuses(before + 1)) return TrackingStatusMsg();
+    return statuses().back();
+  }
+
+  bool waitForStatuses(std::size_t count) {
+    return waitUntil([&] { return statuses().size() >= count; });
+  }
+
+  std::vector<TrackingStatusMsg> statuses() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return statuses_;
+  }
+
+  std_srvs::TriggerResponse call(const std::string& service) {
+    std_srvs::Trigger trigger;
+    EXPECT_TRUE(ros::service::call(space_ + "/fusion/" + service, trigger));
+    return trigger.response;
+  }
+
+  ros::NodeHandle& handle() { return handle_; }
+  const std::string& space() const { return space_; }
+
+  template <typename Condition>
+  static bool waitUntil(const Condition& condition, double patience_s = 30) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      ros::WallDuration(0.002).sleep();
+    }
+    return true;
+  }
+
+ private:
+  void onStatus(const TrackingStatusMsg::ConstPtr& status) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    statuses_.push_back(*status);
+  }
+
+  const std::vector<std::string> kNodelets = {"blur_gate", "pose_detector", "segmenter", "fusion"};
+  std::string space_;
+  ros::NodeHandle handle_;
+  mutable std::mutex mutex_;
+  std::vector<TrackingStatusMsg> statuses_;
+  ros::Publisher color_, depth_, info_;
+  ros::Subscriber status_;
+  std::unique_ptr<nodelet::Loader> loader_;
+};
+
+}  // namespace posefusion_ros
