@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "evaluate.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/evaluation/map_check.hpp"
+#include "posefusion/evaluation/metrics.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/images.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion_ros/bag_source.hpp"
+
+namespace posefusion {
+namespace {
+
+using Poses = std::map<std::int64_t, Eigen::Isometry3d>;
+
+/// The saved map; all that was saved is stable.
+SurfelMap loadSavedMap(const std::string& path) {
+  MapConfig config;
+  config.stable_confidence = 0.0;
+  SurfelMap map(config);
+  map.surfels() = loadMap(path);
+  return map;
+}
+
+Poses posesOf(const Trajectory& trajectory) {
+  Poses poses;
+  for (const auto& pose : trajectory) poses[pose.stamp_ns] = pose.T_world_camera;
+  return poses;
+}
+
+/// True poses, brought into the frame of the map by the alignment of the poses.
+Poses truePosesInMap(const Trajectory& truth, const Trajectory& estimate) {
+  Poses poses;
+  if (truth.empty()) return poses;
+  const auto pairs = matchPoses(truth, estimate);
+  const Eigen::Isometry3d T_truth_map = alignPoses(pairs);
+  for (const auto& pair : pairs) {
+    poses[pair.estimate.stamp_ns] = T_truth_map.inverse() * pair.truth.T_world_camera;
+  }
+  return poses;
+}
+
+/// The true mask of a frame; empty when there is none.
+cv::Mat loadMask(const std::string& folder, std::int64_t stamp_ns) {
+  const std::string path = folder + "/" + formatStamp(stamp_ns) + ".png";
+  if (!std::filesystem::exists(path)) return {};
+  const std::string bytes = readFile(path);
+  const cv::Mat mask = decodeDepth(bytes.data(), bytes.size());
+  if (mask.empty() || mask.type() != CV_8UC1) throw InputError(path + ": is no 8-bit grey image");
+  return mask;
+}
+
+/// Frame and mask without lens distortion. Takes the mask along as the colour.
+class Undistorter {
+ public:
+  void apply(RgbdFrame& frame, cv::Mat& mask) {
+    if (!frame.camera.isDistorted()) return;
+    RgbdFrame masked = frame;
+    if (!mask.empty()) cv::cvtColor(mask, masked.color, cv::COLOR_GRAY2RGB);
+    frame = rectifier_.rectify(masked);
+    if (mask.empty()) return;
+    cv::extractChannel(frame.color, mask, 0);
+    mask = mask > 127;
+  }
+
+ private:
+  Rectifier rectifier_;
+};
+
+void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t masked_frames,
+                 bool json) {
+  if (json) {
+    nlohmann::ordered_json out;
+    out["depth"] = {{"frames", depth.frames()},
+                    {"pixels", depth.pixels()},
+                    {"coverage", depth.coverage()},
+                    {"median_abs_difference_m", depth.medianM()}};
+    out["people_in_map"] = {{"frames_with_masks", masked_frames},
+                            {"surfels", people.surfels()},
+                            {"on_people", people.onPeople()},
+                            {"part", people.part()}};
+    std::cout << out.dump(2) << "\n";
+    return;
+  }
+  std::printf("depth against the map   %.2f mm median over %zu frames (map covers %.1f %%)\n",
+              1e3 * depth.medianM(), depth.frames(), 100 * depth.coverage());
+  if (masked_frames == 0) {
+    std::printf("surfels on people       no true masks and poses to tell\n");
+  } else {
+    std::printf("surfels on people       %.2f %% (%zu of %zu; %zu frames with true masks)\n",
+                100 * people.part(), people.onPeople(), people.surfels(), masked_frames);
+  }
+}
+
+}  // namespace
+
+void evaluateRun(const RunQuestion& q) {
+  const SurfelMap map = loadSavedMap(q.run + "/map.ply");
+  const Trajectory estimate = loadTrajectory(q.run + "/trajectory.txt");
+  posefusion_ros::InputOptions reading;
+  reading.camera_file = q.camera;
+  const auto source = posefusion_ros::openInput(q.input, reading);
+  const Poses poses = posesOf(estimate);
+  const Poses true_poses =
+      truePosesInMap(q.truth.empty() ? source->truth() : loadTrajectory(q.truth), estimate);
+  const std::string masks = q.masks.empty() ? q.input + "/mask" : q.masks;
+
+  DepthCheck depth(map);
+  PeopleCheck people(map.surfels());
+  Undistorter undistorter;
+  std::size_t masked_frames = 0;
+  for (std::size_t i = 0; auto next = source->next(); ++i) {
+    RgbdFrame& frame = next->frame;
+    const auto pose = poses.find(frame.stamp_ns);
+    if (!next->defect.empty() || pose == poses.end()) continue;
+    cv::Mat mask = loadMask(masks, frame.stamp_ns);
+    undistorter.apply(frame, mask);
+    if (i >= q.first_frame && i < q.last_frame) depth.add(frame, mask, pose->second);
+    const auto true_pose = true_poses.find(frame.stamp_ns);
+    if (mask.empty() || true_pose == true_poses.end()) continue;
+    people.add(frame, mask, true_pose->second);
+    ++masked_frames;
+  }
+  printAnswer(depth, people, masked_frames, q.json);
+}
+
+}  // namespace posefusion

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// posefusion_feeder: plays a recording into the chain, frame by frame as it is done with them
+// (lossless) or in real time, and ends when the last frame has been reported.
+#include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <chrono>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/credit_window.hpp"
+#include "posefusion_ros/names.hpp"
+#include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/transform_replay.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using posefusion::InputError;
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+// In real time the chain may lose a frame without a word; silence then ends the replay.
+constexpr double kQuietS = 5.0;
+constexpr int kQueue = 100;
+
+struct FeederSettings {
+  bool lossless = true;
+  int window = 2;
+  double rate = 1.0;
+  double timeout_s = 60.0;
+  int max_frames = 0;
+  bool tf = false;
+  std::string frame_id;
+  InputOptions input;
+};
+
+FeederSettings readSettings() {
+  Parameters parameters{ros::NodeHandle("~")};
+  FeederSettings s;
+  s.lossless = parameters.flag("lossless", s.lossless);
+  s.window = parameters.integer("window", s.window, {1, 1000});
+  s.rate = parameters.number("rate", s.rate, {1e-3, 1e3});
+  s.timeout_s = parameters.number("timeout_s", s.timeout_s, {0.1, 1e6});
+  s.max_frames = parameters.integer("max_frames", s.max_frames, {0, 1e9});
+  s.tf = parameters.flag("tf", s.tf);
+  s.frame_id = parameters.text("frame_id", frames::kOptical);
+  s.input.camera_file = parameters.text("camera_file", "");
+  s.input.topics.color = parameters.text("color_topic", "");
+  s.input.topics.depth = parameters.text("depth_topic", "");
+  s.input.topics.camera_info = parameters.text("camera_info_topic", "");
+  for (const std::string& name : parameters.unknown()) {
+    ROS_WARN("parameter %s is none of the feeder and has no effect", name.c_str());
+  }
+  return s;
+}
+
+class Feeder {
+ public:
+  Feeder(const std::string& input, const FeederSettings& settings)
+      : settings_(settings), source_(openInput(input, settings.input)), spinner_(1) {
+    if (settings.tf) transforms_ = std::make_unique<TransformReplay>(handle_, input);
+    clock_ = handle_.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
+    info_ = handle_.advertise<sensor_msgs::CameraInfo>(topics::kCameraInfo, kQueue);
+    depth_ = handle_.advertise<sensor_msgs::Image>(topics::kDepth, kQueue);
+    color_ = handle_.advertise<sensor_msgs::Image>(topics::kColor, kQueue);
+    status_ = handle_.subscribe(topics::kStatus, 1000, &Feeder::onStatus, this);
+    spinner_.start();
+  }
+
+  /// Throws InputError when the chain does not take or report the frames.
+  void run() {
+    waitForChain();
+    const steady_clock::time_point begin = steady_clock::now();
+    std::int64_t first_ns = -1;
+    while (ros::ok() && (settings_.max_frames == 0 || sent_ < settings_.max_frames)) {
+      const auto next = source_->next();
+      if (!next) break;
+      if (!next->defect.empty()) {
+        ++unreadable_;
+        ROS_WARN("left out: %s", next->defect.c_str());
+        continue;
+      }
+      const std::int64_t stamp_ns = next->frame.stamp_ns;
+      if (first_ns < 0) first_ns = stamp_ns;
+      if (settings_.lossless) {
+        if (!waitBelow(settings_.window, settings_.timeout_s)) fail();
+        if (!ros::ok()) break;
+      } else {
+        const duration<double> due(static_cast<double>(stamp_ns - first_ns) * 1e-9 /
+                                   settings_.rate);
+        std::this_thread::sleep_until(begin +
+                                      std::chrono::duration_cast<steady_clock::duration>(due));
+      }
+      send(next->frame);
+    }
+    const double patience_s = settings_.lossless ? settings_.timeout_s : kQuietS;
+    if (!waitBelow(1, patience_s) && settings_.lossless) fail();
+  }
+
+  std::string summary() const {
+    std::ostringstream text;
+    text << sent_ << " frames sent";
+    for (const auto& [reason, count] : outcomes_) text << ", " << count << " " << reason;
+    if (window_.underWay() > 0) text << ", " << window_.underWay() << " without a status";
+    if (unreadable_ > 0) text << ", " << unreadable_ << " unreadable ones left out";
+    return text.str();
+  }
+
+ private:
+  void waitForChain() const {
+    const auto end = steady_clock::now() + duration<double>(settings_.timeout_s);
+    while (ros::ok()) {
+      std::string missing;
+      for (const ros::Publisher* topic : {&color_, &depth_, &info_}) {
+        if (topic->getNumSubscribers() == 0) missing += " a subscriber of " + topic->getTopic();
+      }
+      if (status_.getNumPublishers() == 0) missing += " a publisher of " + status_.getTopic();
+      if (missing.empty()) return;
+      if (steady_clock::now() > end) {
+        throw InputError("waited " + std::to_string(settings_.timeout_s) + " s in vain for" +
+                         missing + ": is the chain running?");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  /// False when nothing was reported for so long; Ctrl-C ends the wait.
+  bool waitBelow(std::size_t limit, double patience_s) {
+    return window_.waitBelow(limit, duration<double>(patience_s), [] { return ros::ok(); }) ||
+           !ros::ok();
+  }
+
+  void send(const posefusion::RgbdFrame& frame) {
+    std_msgs::Header header;
+    header.stamp = toTime(frame.stamp_ns);
+    header.frame_id = settings_.frame_id;
+    if (transforms_) transforms_->advance(header.stamp);
+    rosgraph_msgs::Clock clock;
+    clock.clock = header.stamp;
+    clock_.publish(clock);
+    window_.sent(frame.stamp_ns);
+    ++sent_;
+    info_.publish(toCameraInfo(frame.camera, header));
+    depth_.publish(toDepthImage(frame, header));
+    color_.publish(toImage(frame.color, "rgb8", header));
+  }
+
+  void onStatus(const TrackingStatusMsg::ConstPtr& status) {
+    static const char* const kNames[] = {"fused",         "bad input",     "blurred",
+                                         "without depth", "not converged", "with few inliers",
+                                         "jumped"};
+    std::string name = status->outcome < std::size(kNames) ? kNames[status->outcome] : "unknown";
+    if (status->outcome == TrackingStatusMsg::DROPPED) name = "dropped";
+    if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
+    {
+      const std::lock_guard<std::mutex> lock(outcome_mutex_);
+      ++outcomes_[name];
+    }
+    if (!window_.reported(toNs(status->header.stamp))) {
+      ROS_WARN("a status for stamp %u.%09u, of which no frame is under way",
+               status->header.stamp.sec, status->header.stamp.nsec);
+    }
+  }
+
+  [[noreturn]] void fail() const {
+    throw InputError("no status on " + status_.getTopic() + " for " +
+                     std::to_string(settings_.timeout_s) + " s: " + summary());
+  }
+
+  FeederSettings settings_;
+  std::unique_ptr<posefusion::FrameSource> source_;
+  ros::NodeHandle handle_;
+  std::unique_ptr<TransformReplay> transforms_;
+  CreditWindow window_;
+  int sent_ = 0;
+  int unreadable_ = 0;
+  std::mutex outcome_mutex_;
+  std::map<std::string, int> outcomes_;
+  ros::Publisher clock_, info_, depth_, color_;
+  ros::Subscriber status_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace
+}  // namespace posefusion_ros
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "posefusion_feeder");
+  if (argc != 2) {
+    std::cerr << "usage: posefusion_feeder BAG_OR_TUM_FOLDER [_lossless:=true] [_window:=2] "
+                 "[_rate:=1.0]\n";
+    return 2;
+  }
+  const ros::NodeHandle alive;  // ROS, and with it the log, ends with the last handle
+  try {
+    posefusion_ros::Feeder feeder(argv[1], posefusion_ros::readSettings());
+    feeder.run();
+    ROS_INFO("%s", feeder.summary().c_str());
+    return 0;
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+}

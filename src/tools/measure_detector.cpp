@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// posefusion_measure_detector: how many simulated people a pose network finds.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/images.hpp"
+#include "posefusion/pose/detector.hpp"
+#include "posefusion/simulator/contact_sheet.hpp"
+#include "posefusion/simulator/scenario.hpp"
+#include "posefusion/simulator/simulation.hpp"
+#include "progress.hpp"
+
+namespace {
+
+using namespace posefusion;
+using namespace posefusion::simulator;
+
+constexpr int kFewestJoints = 4;
+
+struct Count {
+  int people = 0, found = 0, empty_frames = 0, empty_with_people = 0;
+};
+
+bool has(const std::array<bool, kJointCount>& flags, Joint joint) {
+  return flags[static_cast<std::size_t>(joint)];
+}
+
+/// Head and torso can be seen, 1 to 4 m away.
+bool wellInView(const PersonTruth& p, const Eigen::Isometry3d& T_world_camera) {
+  const Eigen::Vector3d neck =
+      T_world_camera.inverse() * p.joints_world_m[static_cast<std::size_t>(Joint::neck)];
+  if (neck.z() < 1.0 || neck.z() > 4.0) return false;
+  for (const Joint j : {Joint::right_shoulder, Joint::left_shoulder, Joint::right_hip,
+                        Joint::left_hip, Joint::nose}) {
+    if (!has(p.in_view, j)) return false;
+  }
+  const bool head = has(p.visible, Joint::nose) || has(p.visible, Joint::right_ear) ||
+                    has(p.visible, Joint::left_ear);
+  const bool hips = has(p.visible, Joint::right_hip) || has(p.visible, Joint::left_hip);
+  const bool shoulders =
+      has(p.visible, Joint::right_shoulder) || has(p.visible, Joint::left_shoulder);
+  return head && hips && shoulders;
+}
+
+bool isFound(const PersonTruth& truth, const cv::Mat& mask, const People& detected) {
+  for (const Person& person : detected.people) {
+    int inside = 0;
+    for (const Keypoint& k : person.joints) {
+      const int col = static_cast<int>(std::lround(k.u)), row = static_cast<int>(std::lround(k.v));
+      const bool in = k.p > 0.0F && col >= 0 && row >= 0 && col < mask.cols && row < mask.rows;
+      if (in && mask.at<std::uint8_t>(row, col) == truth.id) ++inside;
+    }
+    if (inside >= kFewestJoints) return true;
+  }
+  return false;
+}
+
+/// Counts one frame; the answer is whether something went wrong in it.
+bool judge(const SimulatedFrame& frame, const People& detected, Count& count) {
+  if (cv::countNonZero(frame.mask) == 0) {
+    ++count.empty_frames;
+    count.empty_with_people += detected.people.empty() ? 0 : 1;
+    return !detected.people.empty();
+  }
+  bool missed = false;
+  for (const PersonTruth& truth : frame.people) {
+    if (!wellInView(truth, frame.T_world_camera)) continue;
+    const bool found = isFound(truth, frame.mask, detected);
+    ++count.people;
+    count.found += found ? 1 : 0;
+    missed |= !found;
+  }
+  return missed;
+}
+
+Count measure(const std::string& name, const ScenarioChanges& changes, int every,
+              PoseDetector& detector, cv::Mat& failures) {
+  Simulation simulation(loadScenario(name, changes));
+  Count count;
+  Progress progress(static_cast<std::size_t>(simulation.frameCount()));
+  for (int i = 0; i < simulation.frameCount(); i += every) {
+    simulation.jump();
+    const SimulatedFrame frame = simulation.frame(i);
+    if (frame.dropped) continue;
+    const bool wrong = judge(frame, detector.detect(frame.frame), count);
+    if (wrong && failures.rows < 12 * 300) failures.push_back(drawFrame(frame, simulation, 400));
+    progress.update(static_cast<std::size_t>(i + 1));
+  }
+  return count;
+}
+
+double percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a pose\n"
+      "network finds 4 joints or more, and the empty frames in which it finds somebody."};
+  std::vector<std::string> scenarios;
+  std::string failures_file;
+  int every = 15;
+  ScenarioChanges changes;
+  PoseConfig config;
+  app.add_option("scenarios", scenarios, "names or scene files")->required();
+  app.add_option("--model", config.model, "weights of the network")->required();
+  app.add_option("--every", every, "looks at every n-th frame")->check(CLI::Range(1, 10000));
+  app.add_option("--duration", changes.duration_s, "seconds")->check(CLI::PositiveNumber);
+  app.add_option("--seed", changes.seed, "of the simulation");
+  app.add_option("--set", changes.assignments, "KEY=VALUE: any value of the scene file")
+      ->allow_extra_args(false);
+  app.add_option("--failures", failures_file, "PNG with the first frames that went wrong");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    config.every_nth_frame = 1;
+    const auto detector = makePoseDetector(config, {});
+    Count total;
+    cv::Mat failures;
+    for (const auto& name : scenarios) {
+      const Count c = measure(name, changes, every, *detector, failures);
+      std::printf(
+          "%-20s found %d of %d people (%.1f %%), people in %d of %d empty frames (%.1f %%)\n",
+          name.c_str(), c.found, c.people, percent(c.found, c.people), c.empty_with_people,
+          c.empty_frames, percent(c.empty_with_people, c.empty_frames));
+      total.people += c.people, total.found += c.found;
+      total.empty_frames += c.empty_frames, total.empty_with_people += c.empty_with_people;
+    }
+    std::printf(
+        "%-20s found %d of %d people (%.1f %%), people in %d of %d empty frames (%.1f %%)\n", "all",
+        total.found, total.people, percent(total.found, total.people), total.empty_with_people,
+        total.empty_frames, percent(total.empty_with_people, total.empty_frames));
+    if (!failures_file.empty() && !failures.empty()) savePng(failures_file, failures);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "posefusion_measure_detector: " << error.what() << "\n";
+    return 1;
+  }
+}

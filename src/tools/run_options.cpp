@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <vector>
+
+namespace posefusion {
+namespace {
+
+/// Options that end up in the configuration.
+struct ConfigOptions {
+  std::string file, mode, model, detector;
+  std::vector<std::string> assignments;
+};
+
+Config makeConfig(const ConfigOptions& given) {
+  Config config;
+  if (!given.file.empty()) applyFile(config, given.file);
+  if (!given.mode.empty()) applyMode(config, given.mode);
+  if (!given.model.empty()) config.pose.model = given.model;
+  if (!given.detector.empty()) config.pose.detector = given.detector;
+  for (const auto& assignment : given.assignments) applyAssignment(config, assignment);
+  return config;
+}
+
+void addTopicOptions(CLI::App& app, posefusion_ros::InputOptions& reading) {
+  auto& topics = reading.topics;
+  app.add_option("--color-topic", topics.color, "bag: colour images")->group("Bags");
+  app.add_option("--depth-topic", topics.depth, "bag: registered depth images")->group("Bags");
+  app.add_option("--camera-info-topic", topics.camera_info, "bag: the camera")->group("Bags");
+  app.add_option("--people-topic", topics.people, "bag: recorded People")->group("Bags");
+  app.add_option("--truth-topic", topics.truth, "bag: true camera poses")->group("Bags");
+  app.add_option("--max-pair-difference", reading.max_pair_difference_s,
+                 "bag: seconds between the stamps of colour and depth")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group("Bags");
+}
+
+}  // namespace
+
+std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options) {
+  CLI::App app{"Camera trajectory and dense map without the people, from a recorded sequence."};
+  ConfigOptions config;
+  bool print_config = false;
+  auto& reading = options.reading;
+  app.add_option("input", options.input, "TUM folder or bag");
+  app.add_option("--config", config.file, "YAML file of settings");
+  app.add_option("--set", config.assignments, "one setting, group.name=value; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--mode", config.mode, "elastic, posefusion or pfh");
+  app.add_option("--model", config.model, "weights of the pose network");
+  app.add_option("--detector", config.detector, "where people come from")
+      ->check(CLI::IsMember({"network", "recorded", "none"}));
+  app.add_option("--output", options.output, "folder for the results")->capture_default_str();
+  app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: all");
+  app.add_option("--threads", options.threads, "threads to use; 0: all cores")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--truth", options.truth, "true trajectory, TUM format");
+  app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
+  addTopicOptions(app, reading);
+  app.add_flag("--save-masks", options.save_masks, "write mask/ and people.json");
+  app.add_flag("--check-depth", options.check_depth,
+               "compare each frame's depth with the map rendered from its pose (slower)");
+  app.add_flag("--print-config", print_config, "print all settings and stop");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  options.config = makeConfig(config);
+  if (print_config) {
+    std::cout << toYaml(options.config);
+    return 0;
+  }
+  if (options.input.empty()) {
+    std::cerr << "INPUT is missing: a TUM folder or a bag (--help tells more)\n";
+    return 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace posefusion

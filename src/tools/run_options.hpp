@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "posefusion/config.hpp"
+#include "posefusion_ros/bag_source.hpp"
+
+namespace posefusion {
+
+/// What the user asks of posefusion_run.
+struct RunOptions {
+  std::string input;
+  std::string output = "output";
+  std::string truth;  ///< empty: that of the input
+  posefusion_ros::InputOptions reading;
+  std::size_t max_frames = 0;  ///< 0: all
+  int threads = 0;             ///< 0: all cores
+  bool save_masks = false;
+  bool check_depth = false;
+  Config config;
+};
+
+/// Reads the command line: a file of settings, then the mode, then single options and settings, the
+/// later over the earlier. Returns the exit code where there is nothing to run (help,
+/// --print-config, a wrong option: said on stderr). Throws InputError for a wrong setting.
+std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options);
+
+}  // namespace posefusion
