@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <opencv2/core.hpp>
+
+#include "posefusion/tracking/depth_filter.hpp"
+
+namespace posefusion {
+namespace {
+
+PinholeCamera smallCamera() {
+  PinholeCamera camera;
+  camera.width = 80;
+  camera.height = 60;
+  camera.fx = camera.fy = 70;
+  camera.cx = 39.5;
+  camera.cy = 29.5;
+  return camera;
+}
+
+/// Depth of the plane n . p = offset.
+cv::Mat planeDepth(const PinholeCamera& camera, const Eigen::Vector3d& n, double offset) {
+  cv::Mat depth(camera.height, camera.width, CV_32FC1);
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      depth.at<float>(v, u) = static_cast<float>(offset / n.dot(camera.unproject(u, v, 1.0)));
+    }
+  }
+  return depth;
+}
+
+cv::Mat noisyDepth(int rows, int cols) {
+  cv::Mat depth(rows, cols, CV_32FC1);
+  cv::RNG random(3);
+  random.fill(depth, cv::RNG::UNIFORM, 0.2, 5.0);
+  depth.setTo(0, depth < 0.6F);
+  return depth;
+}
+
+double largestDifference(const cv::Mat& a, const cv::Mat& b, const cv::Rect& region) {
+  return cv::norm(a(region), b(region), cv::NORM_INF);
+}
+
+TEST(SmoothDepth, LeavesALeaningPlaneWhereItIs) {
+  const PinholeCamera camera = smallCamera();
+  const cv::Mat depth = planeDepth(camera, Eigen::Vector3d(0.1, 0.5, 0.6).normalized(), 1.5);
+  cv::Mat smooth;
+  smoothDepth(depth, smooth);
+  EXPECT_LT(largestDifference(depth, smooth, {5, 5, 70, 50}), 1e-4);
+}
+
+TEST(SmoothDepth, LowersNoiseAndKeepsSteps) {
+  cv::Mat depth(60, 80, CV_32FC1, cv::Scalar(1.0));
+  depth.colRange(40, 80).setTo(1.5);
+  cv::Mat noise(depth.size(), CV_32FC1);
+  cv::RNG random(5);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, 0.002);
+  cv::Mat smooth;
+  smoothDepth(depth + noise, smooth);
+  cv::Scalar mean, before, after;
+  cv::meanStdDev((depth + noise)(cv::Rect(5, 5, 30, 50)), mean, before);
+  cv::meanStdDev(smooth(cv::Rect(5, 5, 30, 50)), mean, after);
+  EXPECT_LT(after[0], 0.4 * before[0]);
+  EXPECT_LT(largestDifference(depth, smooth, {30, 5, 20, 50}), 0.01);
+}
+
+TEST(SmoothDepth, KeepsHolesAndFillsNone) {
+  const cv::Mat depth = noisyDepth(48, 64);
+  cv::Mat smooth;
+  smoothDepth(depth, smooth);
+  EXPECT_EQ(cv::countNonZero((depth > 0) != (smooth > 0)), 0);
+}
+
+TEST(ShrinkDepth, TakesTheNearestSurfaceOfABlock) {
+  cv::Mat depth = (cv::Mat_<float>(2, 4) << 1.0F, 2.0F, 0.0F, 3.0F, 1.002F, 2.0F, 3.0F, 0.0F);
+  cv::Mat small;
+  shrinkDepth(depth, 2, small);
+  ASSERT_EQ(small.size(), cv::Size(2, 1));
+  EXPECT_NEAR(small.at<float>(0, 0), 1.001, 1e-5);
+  EXPECT_NEAR(small.at<float>(0, 1), 3.0, 1e-5);
+}
+
+TEST(ShrinkDepth, OfAPlaneIsThePlaneOfTheShrunkCamera) {
+  const PinholeCamera camera = smallCamera();
+  const Eigen::Vector3d n = Eigen::Vector3d(0.1, -0.2, 0.9).normalized();  // flat enough for
+  // blocks of 4 pixels to lie on one surface by the sensor's noise
+  for (const int factor : {2, 4}) {
+    cv::Mat small;
+    shrinkDepth(planeDepth(camera, n, 2.0), factor, small);
+    const cv::Mat expected = planeDepth(camera.shrunk(factor), n, 2.0);
+    EXPECT_LT(cv::norm(small, expected, cv::NORM_INF), 1e-4) << "factor " << factor;
+  }
+}
+
+TEST(ShrinkDepth, OfNothingIsNothing) {
+  cv::Mat small;
+  shrinkDepth(cv::Mat::zeros(6, 9, CV_32FC1), 3, small);
+  EXPECT_EQ(cv::countNonZero(small), 0);
+  EXPECT_EQ(small.size(), cv::Size(3, 2));
+}
+
+TEST(ComputeNormals, OfAPlaneIsItsNormalTowardsTheCamera) {
+  const PinholeCamera camera = smallCamera();
+  const Eigen::Vector3d n = Eigen::Vector3d(0.3, 0.4, 0.8).normalized();
+  cv::Mat x, y, z;
+  computeNormals(planeDepth(camera, n, 1.0), camera, x, y, z);
+  const cv::Rect inner(1, 1, camera.width - 2, camera.height - 2);
+  EXPECT_LT(cv::norm(x(inner), cv::Mat(inner.size(), CV_32FC1, -n.x()), cv::NORM_INF), 1e-3);
+  EXPECT_LT(cv::norm(y(inner), cv::Mat(inner.size(), CV_32FC1, -n.y()), cv::NORM_INF), 1e-3);
+  EXPECT_LT(cv::norm(z(inner), cv::Mat(inner.size(), CV_32FC1, -n.z()), cv::NORM_INF), 1e-3);
+}
+
+TEST(ComputeNormals, AreMissingAtStepsHolesAndBorders) {
+  const PinholeCamera camera = smallCamera();
+  cv::Mat depth(camera.height, camera.width, CV_32FC1, cv::Scalar(1.0));
+  depth.colRange(40, 80).setTo(2.0);
+  depth.at<float>(20, 20) = 0;
+  cv::Mat x, y, z;
+  computeNormals(depth, camera, x, y, z);
+  EXPECT_EQ(z.at<float>(30, 39), 0);
+  EXPECT_EQ(z.at<float>(30, 40), 0);
+  EXPECT_EQ(z.at<float>(20, 21), 0);
+  EXPECT_EQ(z.at<float>(0, 10), 0);
+  EXPECT_LT(z.at<float>(30, 30), -0.99);
+}
+
+TEST(DepthFilter, GivesTheSameBitsForAnyNumberOfThreads) {
+  const cv::Mat depth = noisyDepth(240, 320);
+  cv::Mat smooth[2], small[2];
+  for (int i = 0; i < 2; ++i) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, i == 0 ? 1 : 4);
+    smoothDepth(depth, smooth[i]);
+    shrinkDepth(depth, 2, small[i]);
+  }
+  EXPECT_EQ(cv::norm(smooth[0], smooth[1], cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(small[0], small[1], cv::NORM_INF), 0);
+}
+
+TEST(ShrinkToIntensity, IsTheMeanGreyOfTheBlock) {
+  cv::Mat color(2, 2, CV_8UC3, cv::Scalar(0, 0, 0));
+  color.at<cv::Vec3b>(0, 0) = {100, 0, 0};
+  color.at<cv::Vec3b>(1, 1) = {0, 100, 0};
+  cv::Mat grey;
+  shrinkToIntensity(color, 2, grey);
+  EXPECT_NEAR(grey.at<float>(0, 0), (29.9 + 58.7) / 4, 1e-3);
+}
+
+}  // namespace
+}  // namespace posefusion

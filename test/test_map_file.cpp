@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "temporary_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+SurfelMap mapOf(std::size_t count) {
+  SurfelMap map{MapConfig{}};
+  float value = 0.0F;
+  map.surfels().forEachArray([&](auto& array) {
+    array.resize(count);
+    for (auto& x : array) x = static_cast<std::decay_t<decltype(x)>>(value += 0.37F);
+  });
+  return map;
+}
+
+TEST(MapFile, ReadsBackTheStableSurfels) {
+  TemporaryFolder folder;
+  SurfelMap map = mapOf(10);
+  map.surfels().confidence.assign(10, 100.0F);
+  map.surfels().confidence[3] = 0.5F;
+  map.surfels().r[4] = 300.0F;
+  map.surfels().g[4] = -5.0F;
+  EXPECT_EQ(saveMap(folder / "m.ply", map), 9U);
+  const SurfelArrays read = loadMap(folder / "m.ply");
+  ASSERT_EQ(read.size(), 9U);
+  EXPECT_EQ(read.x[2], map.surfels().x[2]);
+  EXPECT_EQ(read.x[3], map.surfels().x[4]) << "the unstable one is left out";
+  EXPECT_EQ(read.nz[8], map.surfels().nz[9]);
+  EXPECT_EQ(read.radius[8], map.surfels().radius[9]);
+  EXPECT_EQ(read.confidence[8], 100.0F);
+  EXPECT_EQ(read.b[0], std::round(map.surfels().b[0]));
+  EXPECT_EQ(read.r[3], 255.0F);
+  EXPECT_EQ(read.g[3], 0.0F);
+}
+
+TEST(MapFile, IsPlyAsOtherToolsReadIt) {
+  TemporaryFolder folder;
+  SurfelMap map = mapOf(2);
+  map.surfels().confidence.assign(2, 100.0F);
+  saveMap(folder / "m.ply", map);
+  const std::string text = readFile(folder / "m.ply");
+  const auto end = text.find("end_header\n");
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_EQ(text.rfind("ply\nformat binary_little_endian 1.0\n", 0), 0U);
+  EXPECT_EQ(text.size() - end - 11, 2U * (6 * 4 + 3 + 2 * 4));
+}
+
+TEST(MapFile, DamagedFilesAreErrors) {
+  TemporaryFolder folder;
+  SurfelMap map = mapOf(5);
+  map.surfels().confidence.assign(5, 100.0F);
+  saveMap(folder / "m.ply", map);
+  const std::string text = readFile(folder / "m.ply");
+  const auto error = [&](const std::string& content) {
+    const auto path = folder.write("x.ply", content);
+    return errorOf([&] { loadMap(path); });
+  };
+  EXPECT_NE(error(text.substr(0, text.size() - 1)).find("is not whole, expected 5 surfels"),
+            std::string::npos);
+  EXPECT_NE(error(text.substr(0, 50)).find("x.ply: is no map"), std::string::npos);
+  EXPECT_NE(error("").find("x.ply: is no map"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace posefusion

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion/evaluation/plot.hpp"
+#include "posefusion/io/map_picture.hpp"
+#include "posefusion/io/people_picture.hpp"
+
+namespace posefusion {
+namespace {
+
+int countColor(const cv::Mat& image, const cv::Vec3b& color) {
+  cv::Mat same;
+  cv::inRange(image, cv::Scalar(color), cv::Scalar(color), same);
+  return cv::countNonZero(same);
+}
+
+ProcessedFrame frameAt(int i, bool person) {
+  ProcessedFrame frame;
+  frame.seen.frame.color = cv::Mat(240, 320, CV_8UC3, cv::Scalar(100, 100, 100));
+  frame.status.stamp_ns = i * 33'000'000LL;
+  if (!person) return frame;
+  frame.segmentation.mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  frame.segmentation.mask(cv::Rect(0, 0, 160, 240)) = 255;
+  return frame;
+}
+
+TEST(DrawPeople, TintsTheMaskAndDrawsTheJoints) {
+  const cv::Mat color(120, 160, CV_8UC3, cv::Scalar(100, 100, 100));
+  cv::Mat mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  mask(cv::Rect(0, 0, 40, 40)) = 255;
+  People people;
+  people.people.resize(1);
+  people.people[0].joints[0] = {100, 60, 0.9F};
+  const cv::Mat picture = drawPeople(color, people, mask);
+  EXPECT_NE(picture.at<cv::Vec3b>(20, 20), cv::Vec3b(100, 100, 100));
+  EXPECT_NE(picture.at<cv::Vec3b>(60, 100), cv::Vec3b(100, 100, 100));
+  EXPECT_EQ(picture.at<cv::Vec3b>(100, 20), cv::Vec3b(100, 100, 100));
+  EXPECT_EQ(color.at<cv::Vec3b>(20, 20), cv::Vec3b(100, 100, 100)) << "the input is left alone";
+}
+
+TEST(PeopleStrip, PrefersFramesWithPeopleAndSpreadsThem) {
+  PeopleStrip strip;
+  EXPECT_TRUE(strip.draw().empty());
+  for (int i = 0; i < 20; ++i) strip.add(frameAt(i, false));
+  EXPECT_EQ(strip.draw().size(), cv::Size(4 * 320, 240));
+  EXPECT_LT(countColor(strip.draw(), {165, 60, 80}), 10);
+  for (int i = 0; i < 100; ++i) strip.add(frameAt(i, true));
+  const cv::Mat full = strip.draw();
+  EXPECT_EQ(full.cols, 4 * 320);
+  // Half of each picture is tinted, but for the stamp written over it.
+  EXPECT_GT(countColor(full, {165, 60, 80}), static_cast<int>(full.total()) * 4 / 10);
+}
+
+TEST(PeopleStrip, TakesFewFramesAsTheyAre) {
+  PeopleStrip strip;
+  strip.add(frameAt(0, true));
+  EXPECT_EQ(strip.draw().size(), cv::Size(320, 240));
+}
+
+TEST(MapPicture, ShowsTheMapFromThreeSides) {
+  SurfelMap map{MapConfig{}};
+  SurfelArrays& s = map.surfels();
+  // A red wall 2 m ahead and, nearer, a green surface that turns its back on the first camera.
+  for (int i = -60; i <= 60; ++i) {
+    for (int j = -60; j <= 60; ++j) {
+      for (const bool front : {true, false}) {
+        s.forEachArray([](auto& array) { array.push_back(0); });
+        s.x.back() = 0.02F * static_cast<float>(i);
+        s.y.back() = 0.02F * static_cast<float>(j);
+        s.z.back() = front ? 2.0F : -1.0F;
+        s.nz.back() = -1.0F;
+        (front ? s.r : s.g).back() = 250.0F;
+        s.radius.back() = 0.02F;
+        s.confidence.back() = 100.0F;
+      }
+    }
+  }
+  PinholeCamera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 525;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  const Trajectory still = {{0, Eigen::Isometry3d::Identity()}};
+  const cv::Mat picture = drawMap(map, still, camera);
+  ASSERT_EQ(picture.size(), cv::Size(3 * 640, 480));
+  const cv::Mat last = picture.colRange(1280, 1920);
+  EXPECT_GT(countColor(last, {250, 0, 0}), 640 * 480 / 2) << "the wall fills the last view";
+  EXPECT_GT(countColor(picture.colRange(640, 1280), {250, 0, 0}), 2000);
+  EXPECT_TRUE(drawMap(SurfelMap{MapConfig{}}, still, camera).empty());
+}
+
+TEST(Plot, ShowsTruthEstimateAndDifference) {
+  Trajectory truth, estimate;
+  for (int i = 0; i < 60; ++i) {
+    StampedPose pose;
+    pose.stamp_ns = i * 33'000'000LL;
+    pose.T_world_camera.translation() = Eigen::Vector3d(0.1 * i, std::sin(0.1 * i), 0);
+    truth.push_back(pose);
+    pose.T_world_camera.translation().y() += i % 2 == 0 ? 0.2 : -0.2;
+    estimate.push_back(pose);
+  }
+  const auto pairs = matchPoses(truth, estimate);
+  const cv::Mat plot = plotTrajectories(truth, pairs, align(pairs, false));
+  EXPECT_GT(countColor(plot, {120, 120, 120}), 200);
+  EXPECT_GT(countColor(plot, {20, 90, 220}), 500);
+  cv::Mat reddish;  // thin lines are blended with what is below them
+  cv::inRange(plot, cv::Scalar(180, 0, 0), cv::Scalar(255, 130, 130), reddish);
+  EXPECT_GT(cv::countNonZero(reddish), 50);
+}
+
+}  // namespace
+}  // namespace posefusion

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/run_report.hpp"
+#include "temporary_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+ProcessedFrame frameAt(int i, FrameOutcome outcome) {
+  ProcessedFrame frame;
+  RgbdFrame& input = frame.seen.frame;
+  input.stamp_ns = i * 100 * kMs;
+  input.camera.width = 64;
+  input.camera.height = 48;
+  input.camera.fx = input.camera.fy = 60;
+  input.camera.cx = 32;
+  input.camera.cy = 24;
+  input.color = cv::Mat(48, 64, CV_8UC3, cv::Scalar(10, 20, 30));
+  input.depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(1000));
+  frame.status.stamp_ns = input.stamp_ns;
+  frame.status.outcome = outcome;
+  frame.status.T_map_camera.translation().x() = 0.01 * i * i;
+  frame.status.tracking_ms = i;
+  frame.status.fusion_ms = 1;
+  return frame;
+}
+
+TEST(RunStatistics, CountsEachFrameOnce) {
+  RunStatistics statistics;
+  statistics.add(frameAt(0, FrameOutcome::fused));
+  statistics.add(frameAt(1, FrameOutcome::blurred));
+  statistics.add(frameAt(2, FrameOutcome::bad_input));
+  statistics.add(frameAt(3, FrameOutcome::few_inliers));
+  statistics.add(frameAt(4, FrameOutcome::no_depth));
+  statistics.add(frameAt(5, FrameOutcome::fused));
+  const FrameCounts& f = statistics.frames();
+  EXPECT_EQ(f.read, 6U);
+  EXPECT_EQ(f.tracked, 2U);
+  EXPECT_EQ(f.blurred, 1U);
+  EXPECT_EQ(f.bad, 1U);
+  EXPECT_EQ(f.lost, 2U);
+}
+
+TEST(RunStatistics, MedianAndTailOfAStage) {
+  RunStatistics statistics;
+  for (int i = 0; i < 101; ++i) statistics.add(frameAt(i, FrameOutcome::fused));
+  const auto stages = statistics.stages();
+  EXPECT_EQ(stages.at("tracking").median_ms, 50);
+  EXPECT_EQ(stages.at("tracking").p95_ms, 95);
+  EXPECT_EQ(stages.at("tracking_and_fusion").median_ms, 51);
+  EXPECT_EQ(stages.count("pose"), 0U) << "the detector looked at no frame";
+}
+
+TEST(RunStatistics, MasksAreAveragedOverTheSharpFrames) {
+  RunStatistics statistics;
+  ProcessedFrame masked = frameAt(0, FrameOutcome::fused);
+  masked.segmentation.mask = cv::Mat::zeros(48, 64, CV_8UC1);
+  masked.segmentation.mask(cv::Rect(0, 0, 32, 48)) = 255;
+  statistics.add(masked);
+  statistics.add(frameAt(1, FrameOutcome::fused));
+  statistics.add(frameAt(2, FrameOutcome::blurred));
+  EXPECT_EQ(statistics.masks().with_mask, 1U);
+  EXPECT_DOUBLE_EQ(statistics.masks().mean_part, 0.25);
+}
+
+class RunReportTest : public testing::Test {
+ protected:
+  RunReportTest() : report(Config{}), map(MapConfig{}) {
+    Trajectory truth;
+    for (int i = 0; i < 30; ++i) {
+      report.add(frameAt(i, i == 7 ? FrameOutcome::not_converged : FrameOutcome::fused));
+      truth.push_back({i * 100 * kMs, frameAt(i, FrameOutcome::fused).status.T_map_camera});
+      truth.back().T_world_camera.translation().y() = 5;
+    }
+    report.setTruth(truth);
+  }
+
+  nlohmann::json summary() {
+    report.write(folder.str(), map);
+    return nlohmann::json::parse(readFile(folder / "summary.json"));
+  }
+
+  TemporaryFolder folder;
+  RunReport report;
+  SurfelMap map;
+};
+
+TEST_F(RunReportTest, SummaryHasTheNamesThatStay) {
+  const auto s = summary();
+  EXPECT_EQ(s.at("frames").at("read"), 30);
+  EXPECT_EQ(s.at("frames").at("blurred"), 0);
+  EXPECT_EQ(s.at("frames").at("tracked"), 29);
+  EXPECT_EQ(s.at("frames").at("lost"), 1);
+  EXPECT_EQ(s.at("surfels"), 0);
+  EXPECT_EQ(s.at("stages").at("fusion").at("median_ms"), 1);
+  EXPECT_TRUE(s.at("stages").at("tracking").contains("p95_ms"));
+  EXPECT_GT(s.at("frames_per_second").get<double>(), 0);
+  EXPECT_GT(s.at("peak_memory_mb").get<double>(), 1);
+  EXPECT_NEAR(s.at("ate_rmse_m").get<double>(), 0, 1e-9);
+  EXPECT_NEAR(s.at("rpe_trans_m_per_s").get<double>(), 0, 1e-9);
+  EXPECT_NEAR(s.at("rpe_rot_deg_per_s").get<double>(), 0, 1e-6);
+  EXPECT_EQ(s.at("configuration").at("blur").at("enabled"), true);
+  EXPECT_EQ(s.at("configuration").at("pose").at("detector"), "network");
+  EXPECT_FALSE(s.at("version").get<std::string>().empty());
+}
+
+TEST_F(RunReportTest, WithoutTruthThereAreNoErrors) {
+  report.setTruth({});
+  EXPECT_FALSE(summary().contains("ate_rmse_m"));
+  EXPECT_EQ(report.table().find("ATE"), std::string::npos);
+}
+
+TEST_F(RunReportTest, TrajectoryHasTheFusedFramesAlone) {
+  report.write(folder.str(), map);
+  const Trajectory written = loadTrajectory(folder / "trajectory.txt");
+  ASSERT_EQ(written.size(), 29U);
+  EXPECT_EQ(written[7].stamp_ns, 800 * kMs);
+  EXPECT_NEAR(written[7].T_world_camera.translation().x(), 0.64, 1e-9);
+}
+
+TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {
+  report.write(folder.str(), map);
+  EXPECT_EQ(loadMap(folder / "map.ply").size(), 0U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "people.png"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.str())) {
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << "nothing is left behind";
+  }
+}
+
+TEST_F(RunReportTest, AFolderThatIsGoneIsAnErrorThatNamesTheFile) {
+  const std::string error = errorOf([&] { report.write(folder / "none", map); });
+  EXPECT_NE(error.find("none/trajectory.txt: cannot be written"), std::string::npos) << error;
+}
+
+TEST(MakeFolder, SaysWhyItCannot) {
+  TemporaryFolder folder;
+  folder.write("file", "");
+  EXPECT_NE(
+      errorOf([&] { makeFolder(folder / "file/below"); }).find("file/below: the folder cannot"),
+      std::string::npos);
+  EXPECT_EQ(errorOf([&] { makeFolder(folder / "a/b/c"); }), "");
+  EXPECT_EQ(errorOf([&] { makeFolder(folder / "a/b/c"); }), "") << "may be there";
+}
+
+}  // namespace
+}  // namespace posefusion

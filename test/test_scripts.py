@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shell scripts, and the rules that hold for every file of the repository."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOURCES = ("include", "src", "test", "scripts", ".ci")
+CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
+
+
+def files(*folders):
+    for folder in folders:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts:
+                yield path
+
+
+def code_files():
+    for path in files(*SOURCES):
+        if path.suffix in CODE or (path.suffix == "" and path.read_bytes()[:2] == b"#!"):
+            yield path
+
+
+def shell_scripts():
+    for path in files("scripts", ".ci"):
+        if path.suffix == ".sh" or path.read_bytes().startswith(b"#!/usr/bin/env bash"):
+            yield path
+
+
+def name(path):
+    return str(path.relative_to(ROOT))
+
+
+def documents():
+    return sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+
+
+def known_settings():
+    """group.name of each setting, read from the restated defaults."""
+    known, group = set(), ""
+    for line in (ROOT / "config" / "posefusion.yaml").read_text().splitlines():
+        found = re.match(r"( *)(\w+):", line)
+        if found and not found.group(1):
+            group = found.group(2)
+        elif found:
+            known.add(f"{group}.{found.group(2)}")
+    return known
+
+
+class Scripts(unittest.TestCase):
+    def test_shell_scripts_parse(self):
+        scripts = list(shell_scripts())
+        self.assertGreater(len(scripts), 5)
+        for script in scripts:
+            done = subprocess.run(["bash", "-n", str(script)], stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_scripts_can_be_executed(self):
+        for path in files("scripts", ".ci"):
+            if path.suffix == "":
+                self.assertTrue(os.access(path, os.X_OK), name(path))
+
+    def test_setup_lists_its_packages(self):
+        done = subprocess.run([str(ROOT / "scripts" / "setup"), "--list"], cwd="/", text=True,
+                              stdout=subprocess.PIPE)
+        self.assertEqual(done.returncode, 0)
+        packages = done.stdout.split()
+        self.assertEqual(len(packages), len(set(packages)))
+        documented = (ROOT / "docs" / "dependencies.md").read_text()
+        for package in packages:
+            self.assertIn(f"`{package}`", documented, "docs/dependencies.md says why it is needed")
+
+    def test_summary_counts_and_tells_failure(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results = pathlib.Path(folder)
+            (results / "gtest-a.xml").write_text(
+                '<testsuites><testsuite><testcase classname="A" name="one"/>'
+                '<testcase classname="A" name="two"><skipped message="x&#10;skipped: no test data at'
+                ' here&#10;"/></testcase></testsuite></testsuites>')
+            log = results / "log"
+            log.write_text("100% tests passed, 0 tests failed out of 1\n")
+            summary = [str(ROOT / "scripts" / "test_summary"), folder, str(log)]
+            done = subprocess.run(summary, stdout=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 0)
+            self.assertIn("1 case skipped: no test data at here", done.stdout)
+            self.assertIn("tests: 1 programs, 0 failed; cases: 1 run, 0 failed, 1 skipped",
+                          done.stdout)
+            (results / "gtest-b.xml").write_text("<testsuites><testsuite>")
+            done = subprocess.run(summary, stdout=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1, "a report cut short is a failed test")
+
+
+class MakeSequence(unittest.TestCase):
+    def make(self, folder, *options):
+        program = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / "posefusion_make_sequence"
+        return subprocess.run([str(program), str(folder), *options], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+
+    def test_same_seed_same_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            one, two = pathlib.Path(folder, "one"), pathlib.Path(folder, "two")
+            for path in (one, two):
+                done = self.make(path, "--frames", "3", "--seed", "5")
+                self.assertEqual(done.returncode, 0, done.stderr)
+            made = sorted(p.relative_to(one) for p in one.rglob("*") if p.is_file())
+            self.assertIn(pathlib.Path("people.json"), made)
+            self.assertEqual(len(made), 3 * 3 + 6)
+            for path in made:
+                self.assertEqual((one / path).read_bytes(), (two / path).read_bytes(), str(path))
+
+    def test_full_folder_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "mine").write_text("precious")
+            done = self.make(folder, "--frames", "1")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(folder, done.stderr)
+            self.assertEqual([p.name for p in pathlib.Path(folder).iterdir()], ["mine"])
+
+
+class Repository(unittest.TestCase):
+    def test_core_includes_no_ros(self):
+        outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "include/posefusion_ros/")
+        ros = re.compile(r'#include\s*[<"](ros|nodelet|pluginlib|tf2_ros|tf2_eigen|cv_bridge|\w+_msgs|'
+                         r'message_filters|image_transport|std_srvs|dynamic_reconfigure|'
+                         r'diagnostic_updater|camera_info_manager)/')
+        # A bag is a file format: read by ROS's own library in one place, without a master.
+        bag_reader = re.compile(r"src/io/bag\w*\.(cpp|hpp)$|include/posefusion/io/bag\w*\.hpp$")
+        looked_at = 0
+        for path in files("include", "src"):
+            if name(path).startswith(outside) or bag_reader.search(name(path)):
+                continue
+            if path.suffix not in (".hpp", ".cpp"):
+                continue
+            looked_at += 1
+            for line in path.read_text().splitlines():
+                self.assertIsNone(ros.search(line), f"{name(path)}: {line}")
+        self.assertGreater(looked_at, 20)
+
+    def test_every_source_names_its_licence(self):
+        for path in code_files():
+            head = "\n".join(path.read_text().splitlines()[:3])
+            self.assertIn("SPDX-License-Identifier: BSD-3-Clause", head, name(path))
+
+    def test_documents_name_what_exists(self):
+        """Links, scripts, programs, launch files and settings that the documents speak of."""
+        settings = known_settings()
+        groups = "|".join(sorted({s.split(".")[0] for s in settings}))
+        programs = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"])
+        found = 0
+        for path in documents():
+            text = path.read_text()
+            named = [path.parent / link for link in
+                     re.findall(r"\]\((?!https?:|#)([^)#]+)(?:#[^)]*)?\)", text)]
+            named += [ROOT / script for script in re.findall(r"(?<![\w/-])scripts/\w+(?:\.\w+)?", text)]
+            named += [programs / p for p in re.findall(r"devel/lib/posefusion/(\w+)", text)]
+            named += [ROOT / "launch" / f
+                      for f in re.findall(r"roslaunch posefusion (\w+\.launch)", text)]
+            for thing in named:
+                self.assertTrue(thing.exists(), f"{name(path)}: {thing} does not exist")
+            for setting in re.findall(rf"(?:`|--set )((?:{groups})\.(?!ply|png)\w+)", text):
+                self.assertIn(setting, settings, name(path))
+                found += 1
+            found += len(named)
+        self.assertGreater(found, 30)
+
+    def test_options_in_readme_exist(self):
+        known = (ROOT / "scripts" / "test").read_text()
+        for program in ("run", "evaluate", "simulate"):
+            path = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / f"posefusion_{program}"
+            known += subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, text=True).stdout
+        options = set(re.findall(r"(?<![\w-])--[a-z][\w-]*", (ROOT / "README.md").read_text()))
+        self.assertGreater(len(options), 10)
+        for option in options:
+            self.assertRegex(known, rf"(?<![\w-]){option}(?![\w-])", "README.md")
+
+    def test_no_absolute_paths(self):
+        absolute = re.compile(r"/(home|root|work|Users|mnt)/[A-Za-z]")
+        tracked = list(files("include", "src", "test", "scripts", ".ci", "config", "docs", "launch", "msg"))
+        tracked += [p for p in ROOT.iterdir() if p.suffix in (".md", ".rst", ".xml", ".txt")]
+        for path in tracked:
+            try:
+                text = path.read_text()
+            except UnicodeDecodeError:
+                continue
+            for line in text.splitlines():
+                self.assertIsNone(absolute.search(line), f"{name(path)}: {line}")

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "posefusion/core/se3.hpp"
+
+namespace posefusion {
+namespace {
+
+Vector6d randomTwist(std::mt19937& random, double angle) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Vector6d twist;
+  for (int i = 0; i < 6; ++i) twist[i] = unit(random);
+  twist.tail<3>() *= angle / twist.tail<3>().norm();
+  return twist;
+}
+
+TEST(Se3, LogInvertsExpFromTinyAnglesToAlmostPi) {
+  std::mt19937 random(1);
+  for (const double angle : {1e-12, 1e-7, 1e-5, 1e-3, 0.1, 1.0, 2.0, 3.1, 3.1415}) {
+    const Vector6d twist = randomTwist(random, angle);
+    EXPECT_LT((logSe3(expSe3(twist)) - twist).norm(), 1e-8) << "angle " << angle;
+  }
+}
+
+TEST(Se3, ExpIsARigidMotion) {
+  std::mt19937 random(2);
+  for (const double angle : {1e-9, 1e-4, 0.5, 3.0}) {
+    const Eigen::Matrix3d R = expSe3(randomTwist(random, angle)).linear();
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+    EXPECT_NEAR(R.determinant(), 1.0, 1e-9);
+  }
+}
+
+TEST(Se3, ExpOfATwistAndItsOppositeCancel) {
+  std::mt19937 random(3);
+  const Vector6d twist = randomTwist(random, 0.7);
+  const Eigen::Isometry3d T = expSe3(twist) * expSe3(-twist);
+  EXPECT_LT((T.matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-12);
+}
+
+TEST(Se3, OrthonormalisedRepairsADriftedRotation) {
+  Eigen::Isometry3d T = expSe3(Vector6d::Constant(0.3));
+  T.linear() *= 1.0001;
+  const Eigen::Matrix3d R = orthonormalised(T).linear();
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace posefusion

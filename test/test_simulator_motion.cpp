@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// People and cameras move as bodies can.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "posefusion/simulator/camera_path.hpp"
+#include "posefusion/simulator/crowd.hpp"
+#include "posefusion/simulator/posture.hpp"
+#include "simulator_scene.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3f;
+
+World emptyRoom(double width_m, double depth_m) {
+  World world;
+  world.rooms.emplace_back(Eigen::Vector3d::Zero(), Eigen::Vector3d(width_m, depth_m, 2.5));
+  return world;
+}
+
+Vector2d farAway(double) { return {-50.0, -50.0}; }
+
+PersonSpec walker(const Vector2d& from, const Vector2d& to) {
+  PersonSpec person;
+  person.start_m = from;
+  person.repeats = false;
+  Action walk;
+  walk.kind = Action::Kind::walk;
+  walk.at_m.head<2>() = to;
+  person.script = {walk};
+  return person;
+}
+
+TEST(SimulatorMotion, WalkersArriveAndTheirStandingFeetDoNotSlide) {
+  const World world = emptyRoom(8, 4);
+  const Crowd crowd({walker({1, 2}, {6.5, 2.4})}, Walkway(world, 0.3), farAway, 12.0);
+  ActorState before = crowd.at(0, 0.0);
+  int steps = 0;
+  for (double t = 0.02; t < 11.0; t += 1.0 / 60.0) {
+    const ActorState now = crowd.at(0, t);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const bool stood = before.feet[side].lift_m <= 0.0, stands = now.feet[side].lift_m <= 0.0;
+      if (stood && stands) {
+        EXPECT_LT((now.feet[side].at - before.feet[side].at).norm(), 1e-9);
+      }
+      steps += stood && !stands ? 1 : 0;
+    }
+    before = now;
+  }
+  EXPECT_LT((before.at - Vector2d(6.5, 2.4)).norm(), 0.12);
+  EXPECT_GE(steps, 7);
+  EXPECT_LE(steps, 24);
+}
+
+TEST(SimulatorMotion, PeopleWhoMeetKeepApart) {
+  const World world = emptyRoom(8, 4);
+  const Crowd crowd({walker({1, 2}, {7, 2}), walker({7, 2.02}, {1, 2.02})}, Walkway(world, 0.3),
+                    farAway, 14.0);
+  for (double t = 0.0; t < 13.0; t += 0.05) {
+    EXPECT_GT((crowd.at(0, t).at - crowd.at(1, t).at).norm(), 0.40) << t;
+  }
+  EXPECT_LT((crowd.at(0, 13.5).at - Vector2d(7, 2)).norm(), 0.3);
+}
+
+TEST(SimulatorMotion, WaysLeadRoundFurniture) {
+  World world = emptyRoom(6, 6);
+  world.footprints.push_back({{3, 3}, {1.0, 1.5}, 0.3});
+  // The grid has cells of 10 cm: legs may cut a corner by less than that.
+  const auto way = Walkway(world, 0.3).findWay({1, 3}, {5, 3});
+  const Walkway walkway(world, 0.22);
+  ASSERT_GE(way.size(), 3U);
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    for (double s = 0.0; s <= 1.0; s += 0.05) {
+      EXPECT_TRUE(walkway.isFree(way[i] + s * (way[i + 1] - way[i])));
+    }
+  }
+}
+
+TEST(SimulatorMotion, LimbsKeepTheirLengthsAndReachWhatIsInReach) {
+  const Vector3f root(0, 0, 1);
+  for (const Vector3f& target : {Vector3f(0.2F, 0.1F, 0.7F), Vector3f(0.0F, 0.3F, 0.8F),
+                                 Vector3f(2.0F, 0.0F, 1.0F), Vector3f(0.0F, 0.0F, 1.0F)}) {
+    const LimbPose limb = solveLimb(root, target, {0.3F, 0.25F}, {-1, 0, 0});
+    EXPECT_NEAR((limb.middle - root).norm(), 0.3F, 1e-3F);
+    EXPECT_NEAR((limb.end - limb.middle).norm(), 0.25F, 2e-3F);
+    const float distance = (target - root).norm();
+    if (distance > 0.1F && distance < 0.5F) {
+      EXPECT_LT((limb.end - target).norm(), 1e-4F);
+    }
+  }
+}
+
+TEST(SimulatorMotion, BonesOfAPostureHoldTogether) {
+  const World world = emptyRoom(8, 4);
+  const Crowd crowd({walker({1, 2}, {6.5, 2.4})}, Walkway(world, 0.3), farAway, 5.0);
+  const Rig rig{Build{}};
+  for (double t = 0.0; t < 5.0; t += 0.21) {
+    const Posture posture = poseBody(rig, crowd.at(0, t), 7U);
+    for (int bone = 1; bone < static_cast<int>(Bone::burden); ++bone) {
+      const auto b = static_cast<std::size_t>(bone);
+      const auto parent = static_cast<std::size_t>(Rig::kParent[b]);
+      const Vector3f gap = posture[b] * rig.start[b] - posture[parent] * rig.start[b];
+      EXPECT_LT(gap.norm(), 0.03F) << bone << " at " << t;
+    }
+    const auto joints = jointsOf(rig, posture);
+    EXPECT_GT(joints[static_cast<std::size_t>(Joint::nose)].z(), 1.4F);
+  }
+}
+
+/// No camera path jumps: the largest speed over a while.
+double fastest(const CameraPath& path, double duration_s) {
+  double most = 0.0;
+  Eigen::Isometry3d before = path.at(0.0);
+  for (double t = 0.005; t < duration_s; t += 0.005) {
+    const Eigen::Isometry3d now = path.at(t);
+    most = std::max(most, (now.translation() - before.translation()).norm() / 0.005);
+    EXPECT_NEAR(now.linear().determinant(), 1.0, 1e-6);
+    before = now;
+  }
+  return most;
+}
+
+TEST(SimulatorMotion, HandHeldCamerasMoveSmoothly) {
+  for (const char* pattern : {"static", "xyz", "rpy", "halfsphere"}) {
+    HandHeld spec;
+    spec.pattern = pattern;
+    const auto path = makeHandHeld(spec, 5U);
+    EXPECT_LT(fastest(*path, 30.0), 1.6) << pattern;
+    const double still = (path->at(3.0).translation() - path->at(0.0).translation()).norm();
+    if (std::string(pattern) == "static") {
+      EXPECT_LT(still, 0.06);
+    }
+  }
+}
+
+TEST(SimulatorMotion, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
+  Robot spec;
+  spec.waypoints = {{1, 1}, {6, 1}, {6, 5}};
+  spec.falls = {{9.0, "forward", 3.0, 0.8, 0.9}};
+  const auto path = makeRobot(spec, 30.0, 3U);
+  EXPECT_LT(fastest(*path, 30.0), 9.0);
+  ASSERT_EQ(path->events().size(), 1U);
+  const Event fall = path->events()[0];
+  EXPECT_EQ(fall.kind, "fall");
+  EXPECT_NEAR(fall.start_s, 9.0, 0.8);
+  EXPECT_NEAR(path->at(fall.start_s - 0.1).translation().z(), spec.height_m, 0.05);
+  EXPECT_LT(path->at(fall.start_s + 2.0).translation().z(), 0.35);
+  const Eigen::Isometry3d before = path->at(fall.start_s - 0.1), after = path->at(fall.end_s + 0.2);
+  EXPECT_NEAR(after.translation().z(), spec.height_m, 0.05);
+  EXPECT_GT((after.translation() - before.translation()).norm(), 0.5);
+  EXPECT_GT(std::acos(before.linear().col(2).dot(after.linear().col(2))), 0.6);
+}
+
+}  // namespace
+}  // namespace posefusion::simulator

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scene files: the package's own are good, bad ones are refused with the place of the mistake.
+#include <gtest/gtest.h>
+
+#include "simulator_scene.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+std::string loadError(const std::string& text) {
+  return errorOf([&] { load(text); });
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string kRoom = "rooms: [{size_m: [4, 4, 2.5]}]\n";
+
+TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
+  for (const char* name : {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere",
+                           "sitting_static", "sitting_xyz", "sitting_halfsphere", "loop_room",
+                           "hrpslam1", "hrpslam2", "fall_short", "empty_room", "crowd"}) {
+    const Scenario s = loadScenario(name);
+    EXPECT_FALSE(s.rooms.empty()) << name;
+    EXPECT_TRUE(s.robot || s.hand_held) << name;
+  }
+  EXPECT_EQ(loadScenario("walking_xyz").hand_held->pattern, "xyz");
+  EXPECT_EQ(loadScenario("walking_xyz").people.size(), 2U);
+  EXPECT_EQ(loadScenario("crowd").people.size(), 10U);
+  EXPECT_EQ(loadScenario("empty_room").people.size(), 0U);
+  EXPECT_EQ(loadScenario("hrpslam1").robot->falls.size(), 2U);
+  EXPECT_EQ(loadScenario("hrpslam2").robot->falls.size(), 5U);
+  EXPECT_EQ(loadScenario("hrpslam1").duration_s, 840.0);
+  EXPECT_EQ(loadScenario("hrpslam2").duration_s, 780.0);
+}
+
+TEST(SimulatorScenario, EveryValueCanBeChanged) {
+  ScenarioChanges changes;
+  changes.assignments = {"camera.period_s=7", "people.1.height_m=1.9", "color.noise=0"};
+  changes.duration_s = 2.5;
+  const Scenario s = loadScenario("walking_xyz", changes);
+  EXPECT_EQ(s.hand_held->period_s, 7.0);
+  EXPECT_EQ(s.people[1].build.height_m, 1.9);
+  EXPECT_EQ(s.color.noise, 0.0);
+  EXPECT_EQ(s.duration_s, 2.5);
+  changes.assignments = {"people.7.height_m=1.9"};
+  EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }), "'7' is no entry"));
+}
+
+TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
+  EXPECT_TRUE(contains(errorOf([] { loadScenario("nowhere"); }), "walking_xyz"));
+  EXPECT_TRUE(contains(errorOf([] { loadScenario("nowhere.yaml"); }), "nowhere.yaml"));
+  EXPECT_TRUE(contains(loadError("rooms: ["), "YAML"));
+  EXPECT_TRUE(contains(loadError("duration_s: 3"), "rooms is missing"));
+  EXPECT_TRUE(contains(loadError(kRoom + "colour: {}"), "colour is unknown"));
+  EXPECT_TRUE(contains(loadError(kRoom + "camera: {motion: fly}"), "halfsphere"));
+  EXPECT_TRUE(contains(loadError(kRoom + "camera: {wdith: 3}"), "camera: wdith is unknown"));
+  EXPECT_TRUE(contains(loadError(kRoom + "duration_s: long"), "expected a number"));
+  EXPECT_TRUE(contains(loadError(kRoom + "duration_s: -3"), "duration_s is -3"));
+  EXPECT_TRUE(
+      contains(loadError(kRoom + "objects: [{kind: table, at_m: [1]}]"), "objects[0]: at_m"));
+  EXPECT_TRUE(contains(loadError(kRoom + "objects: [{kind: chiar, at_m: [1, 1]}]"), "chair"));
+  EXPECT_TRUE(contains(loadError(kRoom + "people: [{script: [{do: fly}]}]"),
+                       "people[0]: script[0]: do is 'fly'"));
+  EXPECT_TRUE(contains(loadError("base: scene.yaml\n" + kRoom), "leads back"));
+}
+
+TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
+  const auto build = [](const std::string& rest) {
+    return errorOf([&] { Simulation simulation(load(kRoom + "duration_s: 0.2\n" + rest)); });
+  };
+  EXPECT_EQ(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}"), "");
+  EXPECT_TRUE(contains(build("camera: {at_m: [-1, 1, 1.2], look_at_m: [3, 3, 1]}"), "outside"));
+  EXPECT_TRUE(
+      contains(build("camera: {at_m: [0.02, 1, 1.2], look_at_m: [3, 1, 1], shake: 0}"), "8 cm"));
+  EXPECT_TRUE(contains(build("camera: {at_m: [2, 2, 0.9], look_at_m: [3, 3, 1]}\n"
+                             "objects: [{kind: pillar, at_m: [2, 2], size_m: [0.8, 0.8, 2.4]}]"),
+                       "inside"));
+  EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1], look_at_m: [1, 1, 2]}"), "straight above"));
+  EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
+                             "people: [{start_m: [2, 2], script: [{do: walk, to: [9, 2]}]}]"),
+                       "people[0]: script[0]"));
+  EXPECT_TRUE(contains(build("objects: [{kind: table, texture: fur, at_m: [1, 1]}]"), "fur"));
+}
+
+}  // namespace
+}  // namespace posefusion::simulator

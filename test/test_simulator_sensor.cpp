@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The errors of the cameras are those of the papers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "posefusion/simulator/color_sensor.hpp"
+#include "posefusion/simulator/depth_sensor.hpp"
+
+namespace posefusion::simulator {
+namespace {
+
+PinholeCamera xtion() { return {640, 480, 525, 525, 319.5, 239.5, {}}; }
+
+DepthView wall(float z_m, float cosine = 1.0F) {
+  const cv::Size size(640, 480);
+  return {cv::Mat(size, CV_32FC1, cv::Scalar(z_m)), cv::Mat::zeros(size, CV_8UC1),
+          cv::Mat(size, CV_32FC1, cv::Scalar(cosine)), cv::Mat(size, CV_32FC1, cv::Scalar(0.7)),
+          cv::Mat::zeros(size, CV_32FC1)};
+}
+
+cv::Mat sense(const DepthView& view, const DepthConfig& config, std::uint32_t key = 1U) {
+  cv::Mat depth, mask;
+  senseDepth(view, xtion(), config, key, depth, mask);
+  return depth;
+}
+
+TEST(SimulatorDepth, SigmasAreThoseOfNguyen) {
+  EXPECT_NEAR(axialSigmaM(0.4, 0.0), 0.0012, 1e-9);
+  EXPECT_NEAR(axialSigmaM(2.0, 0.0), 0.0012 + 0.0019 * 1.6 * 1.6, 1e-9);
+  EXPECT_GT(axialSigmaM(2.0, 1.4), axialSigmaM(2.0, 0.0));
+  EXPECT_NEAR(lateralSigmaPx(0.0), 0.8, 1e-9);
+}
+
+TEST(SimulatorDepth, StepsGrowWithTheSquareOfTheDistance) {
+  const DepthConfig config;
+  EXPECT_NEAR(quantumM(4.0, config, 525) / quantumM(1.0, config, 525), 16.0, 1e-9);
+  EXPECT_NEAR(quantumM(1.0, config, 525), 0.0032, 0.0005);  // about 3 mm at 1 m, as measured there
+  DepthConfig quiet;
+  quiet.axial = 0.0;
+  quiet.distortion = 0.0;
+  const cv::Mat depth = sense(wall(2.0F), quiet);
+  double low, high;
+  cv::minMaxLoc(depth, &low, &high, nullptr, nullptr, depth > 0);
+  EXPECT_EQ(low, high);  // one step for a flat wall
+  EXPECT_NEAR(low, 2000.0, 500.0 * quantumM(2.0, quiet, 525) + 1.0);
+}
+
+TEST(SimulatorDepth, NoiseOnAWallIsTheModels) {
+  DepthConfig config;
+  config.distortion = 0.0;
+  for (const double z : {1.0, 2.0, 3.5}) {
+    const cv::Mat depth = sense(wall(static_cast<float>(z)), config);
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(depth, mean, deviation, depth > 0);
+    const double quantum = quantumM(z, {}, 525);
+    const double expected = std::hypot(axialSigmaM(z, 0.0), quantum / std::sqrt(12.0));
+    EXPECT_NEAR(mean[0], 1000.0 * z, 250.0 * quantum + 1.0);
+    EXPECT_NEAR(deviation[0], 1000.0 * expected, 150.0 * expected);
+    EXPECT_GT(cv::countNonZero(depth), 0.95 * 640 * 480);
+  }
+}
+
+TEST(SimulatorDepth, SystematicErrorsAreThoseOfTheCameraNotOfTheFrame) {
+  const auto smooth = [](std::uint32_t key, int specimen) {
+    DepthConfig config;
+    config.specimen = specimen;
+    cv::Mat depth, mean;
+    sense(wall(2.0F), config, key).convertTo(depth, CV_32F);
+    depth.setTo(2000.0F, depth == 0.0F);
+    cv::resize(depth, mean, {8, 6}, 0, 0, cv::INTER_AREA);
+    return mean;
+  };
+  const cv::Mat first = smooth(1U, 1), again = smooth(2U, 1), other = smooth(1U, 2);
+  EXPECT_LT(cv::norm(first, again, cv::NORM_INF), 2.0);
+  EXPECT_GT(cv::norm(first, other, cv::NORM_INF), 8.0);
+  EXPECT_LT(cv::norm(first, cv::Mat(first.size(), CV_32F, cv::Scalar(2000)), cv::NORM_INF), 40.0);
+}
+
+TEST(SimulatorDepth, RangeDarkGrazingAndShinySurfacesHaveNoDepth) {
+  EXPECT_EQ(cv::countNonZero(sense(wall(0.3F), {})), 0);
+  EXPECT_EQ(cv::countNonZero(sense(wall(6.0F), {})), 0);
+  EXPECT_LT(cv::countNonZero(sense(wall(2.0F, 0.05F), {})), 0.2 * 640 * 480);
+  DepthView dark = wall(3.0F);
+  dark.infrared = 0.02F;
+  EXPECT_LT(cv::countNonZero(sense(dark, {})), 0.2 * 640 * 480);
+  DepthView mirror = wall(2.0F);
+  mirror.gloss = 0.9F;
+  EXPECT_LT(cv::countNonZero(sense(mirror, {})), 0.4 * 640 * 480);
+}
+
+TEST(SimulatorDepth, ThingsCastAShadowOfTheProjectorOnTheirLeft) {
+  DepthView view = wall(3.0F);
+  view.depth_m(cv::Rect(300, 0, 100, 480)) = 1.0F;
+  const cv::Mat depth = sense(view, {});
+  const double width = 525 * 0.075 * (1.0 / 1.0 - 1.0 / 3.0);  // pixels
+  const auto filled = [&](int x, int columns) {
+    return cv::countNonZero(depth(cv::Rect(x, 0, columns, 480))) / (480.0 * columns);
+  };
+  EXPECT_LT(filled(300 - static_cast<int>(width) + 3, static_cast<int>(width) - 6), 0.1);
+  EXPECT_GT(filled(200, 50), 0.95);
+  EXPECT_GT(filled(420, 50), 0.95);
+  EXPECT_GT(filled(320, 50), 0.95);
+}
+
+TEST(SimulatorDepth, WithoutNoiseDepthIsExact) {
+  DepthConfig config;
+  config.noise = false;
+  const cv::Mat depth = sense(wall(1.2345F), config);
+  EXPECT_EQ(cv::countNonZero(depth != 1235) * cv::countNonZero(depth != 1234), 0);
+}
+
+TEST(SimulatorColor, ExposureFollowsTheLightInSteps) {
+  ColorConfig config;
+  AutoExposure exposure(config);
+  exposure.look(cv::Mat(48, 64, CV_32FC3, cv::Scalar::all(0.5)));
+  const Exposure bright = exposure.current();
+  const cv::Mat dark(48, 64, CV_32FC3, cv::Scalar::all(0.1));
+  double before = bright.time_ms * bright.gain;
+  for (int i = 0; i < 80; ++i) {
+    exposure.look(dark);
+    const double now = exposure.current().time_ms * exposure.current().gain;
+    EXPECT_LE(now / before, 1.2);  // never more than a quarter of a stop at once
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_NEAR(before / (bright.time_ms * bright.gain), 5.0, 1.0);
+  EXPECT_LE(exposure.current().time_ms, config.max_exposure_ms);
+}
+
+TEST(SimulatorColor, GainRaisesTheNoise) {
+  ColorConfig config;
+  config.vignette = 0.0;
+  ColorSensor sensor(config);
+  const auto deviation = [&](double light, const Exposure& exposure) {
+    cv::Mat picture;
+    sensor.expose(cv::Mat(100, 100, CV_32FC3, cv::Scalar::all(light)), exposure, 3U, picture);
+    cv::Scalar mean, sigma;
+    cv::meanStdDev(picture, mean, sigma);
+    EXPECT_NEAR(mean[1], 128.0, 30.0);
+    return sigma[1];
+  };
+  const double low = deviation(0.12, {16.0, 1.0}), high = deviation(0.12 / 8, {16.0, 8.0});
+  EXPECT_GT(low, 0.5);
+  EXPECT_GT(high, 2.0 * low);
+}
+
+}  // namespace
+}  // namespace posefusion::simulator

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The programs as a user runs them: exit codes, messages, files.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/images.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/tum_writer.hpp"
+#include "posefusion/synthetic/sequence.hpp"
+#include "temporary_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kFrames = 12;
+
+std::vector<fs::path> filesIn(const std::string& folder) {
+  std::vector<fs::path> files(fs::directory_iterator(folder), fs::directory_iterator{});
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// A program that runs, with stdout and stderr in one file.
+class Program {
+ public:
+  Program(const std::string& name, std::vector<std::string> arguments, const std::string& log)
+      : log_(log) {
+    arguments.insert(arguments.begin(), std::string(POSEFUSION_TOOL_DIR) + "/" + name);
+    std::vector<char*> argv;
+    for (auto& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ != 0) return;
+    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+
+  void send(int signal) const { kill(pid_, signal); }
+
+  int exitCode() const {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  std::string said() const { return readFile(log_); }
+
+ private:
+  std::string log_;
+  pid_t pid_;
+};
+
+class ToolsTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    SyntheticOptions options;
+    options.frames = kFrames;
+    options.width = 320;
+    options.height = 240;
+    const SyntheticSequence sequence(options);
+    TumWriter writer(*folder_ / "sequence", sequence.camera());
+    for (int i = 0; i < kFrames; ++i) {
+      const SyntheticFrame frame = sequence.frame(i);
+      writer.add(frame.frame);
+      writer.addTruth({frame.frame.stamp_ns, frame.T_map_camera});
+      writer.addMask(frame.frame.stamp_ns, frame.mask);
+      writer.addPeople(frame.people);
+    }
+    writer.finish();
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  /// A copy of the sequence that a test may damage.
+  std::string copy(const std::string& name) const {
+    fs::copy(sequence(), own / name, fs::copy_options::recursive);
+    return own / name;
+  }
+  static std::string sequence() { return *folder_ / "sequence"; }
+
+  int run(std::vector<std::string> arguments, const std::string& name = "posefusion_run") {
+    const Program program(name, std::move(arguments), own / "log.txt");
+    const int code = program.exitCode();
+    said = program.said();
+    return code;
+  }
+  bool hasSaid(const std::string& text) const { return said.find(text) != std::string::npos; }
+
+  static nlohmann::json summaryOf(const std::string& output) {
+    return nlohmann::json::parse(readFile(output + "/summary.json"));
+  }
+
+  TemporaryFolder own;
+  std::string said;
+
+ private:
+  static TemporaryFolder* folder_;
+};
+TemporaryFolder* ToolsTest::folder_ = nullptr;
+
+TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
+  const std::string one = own / "one", two = own / "two";
+  const std::vector<std::string> common = {sequence(), "--detector", "recorded", "--save-masks"};
+  const auto with = [&](const std::string& output, const std::string& threads) {
+    auto arguments = common;
+    arguments.insert(arguments.end(), {"--output", output, "--threads", threads});
+    return arguments;
+  };
+  ASSERT_EQ(run(with(one, "1")), 0) << said;
+  EXPECT_TRUE(hasSaid("12 read, 12 tracked, 0 lost")) << said;
+  ASSERT_EQ(run(with(two, "2")), 0) << said;
+  for (const char* file : {"trajectory.txt", "map.ply", "map.png", "people.png", "people.json"}) {
+    EXPECT_EQ(readFile(one + "/" + file), readFile(two + "/" + file)) << file;
+    EXPECT_FALSE(readFile(one + "/" + file).empty()) << file;
+  }
+  EXPECT_EQ(readFile(one + "/people.json"), readFile(sequence() + "/people.json"));
+  const auto summary = summaryOf(one);
+  EXPECT_LT(summary.at("ate_rmse_m").get<double>(), 0.02);
+  EXPECT_EQ(summary.at("surfels"), loadMap(one + "/map.ply").size());
+  for (const auto& mask : fs::directory_iterator(sequence() + "/mask")) {
+    EXPECT_TRUE(fs::exists(fs::path(one) / "mask" / mask.path().filename())) << mask.path();
+  }
+  EXPECT_EQ(run({one, two}, "posefusion_evaluate"), 1);
+  EXPECT_EQ(run({sequence() + "/groundtruth.txt", one + "/trajectory.txt", "--json", "--plot",
+                 own / "plot.png"},
+                "posefusion_evaluate"),
+            0)
+      << said;
+  EXPECT_NEAR(nlohmann::json::parse(said).at("ate_m").at("rmse").get<double>(),
+              summary.at("ate_rmse_m").get<double>(), 1e-6);
+  EXPECT_GT(fs::file_size(own / "plot.png"), 1000U);
+  EXPECT_EQ(run({"run", one, sequence(), "--first-frame", "1", "--json"}, "posefusion_evaluate"),
+            0);
+  const auto check = nlohmann::json::parse(said);
+  EXPECT_EQ(check.at("people_in_map").at("frames_with_masks"), kFrames);
+  EXPECT_LT(check.at("depth").at("median_abs_difference_m").get<double>(), 0.02);
+}
+
+TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
+  const std::string file =
+      own.write("c.yaml", "tracking: {max_depth_m: 3.5}\nblur: {threshold: 7}");
+  ASSERT_EQ(run({"--print-config", "--config", file, "--set", "blur.threshold=9", "--detector",
+                 "none", "--mode", "posefusion"}),
+            0);
+  EXPECT_TRUE(hasSaid("max_depth_m: 3.5"));
+  EXPECT_TRUE(hasSaid("threshold: 9.0"));
+  EXPECT_TRUE(hasSaid("detector: none"));
+  EXPECT_EQ(run({sequence(), "--set", "blur.treshold=9"}), 1);
+  EXPECT_TRUE(hasSaid("blur.treshold is no setting of posefusion")) << said;
+  EXPECT_EQ(run({sequence(), "--set", "blur.threshold=-1"}), 1);
+  EXPECT_TRUE(hasSaid("blur.threshold is -1, expected 0 to")) << said;
+  EXPECT_EQ(run({sequence(), "--mode", "fast"}), 1);
+  EXPECT_TRUE(hasSaid("mode is 'fast', expected one of elastic, posefusion, pfh")) << said;
+  EXPECT_NE(run({sequence(), "--faster"}), 0);
+  EXPECT_TRUE(hasSaid("--faster")) << said;
+}
+
+TEST_F(ToolsTest, WrongInputIsAnErrorThatNamesIt) {
+  EXPECT_EQ(run({}), 1);
+  EXPECT_TRUE(hasSaid("INPUT is missing")) << said;
+  EXPECT_EQ(run({own / "none", "--detector", "none"}), 1);
+  EXPECT_TRUE(hasSaid("none: does not exist, expected a TUM folder or a bag")) << said;
+  fs::create_directory(own / "empty");
+  EXPECT_EQ(run({own / "empty", "--detector", "none"}), 1);
+  EXPECT_TRUE(hasSaid("empty: is no TUM folder, expected associations.txt")) << said;
+  EXPECT_EQ(run({own.write("x.bag", "no bag"), "--detector", "none"}), 1);
+  EXPECT_TRUE(hasSaid("x.bag: the bag cannot be read")) << said;
+  EXPECT_EQ(run({sequence(), "--detector", "none", "--truth", own / "t.txt"}), 1);
+  EXPECT_TRUE(hasSaid("t.txt: cannot be opened")) << said;
+  fs::remove(copy("alone") + "/people.json");
+  EXPECT_EQ(run({own / "alone", "--detector", "recorded"}), 1);
+  EXPECT_TRUE(hasSaid("alone has no recorded people")) << said;
+  EXPECT_EQ(run({sequence(), "--model", own / "net.pb", "--output", own / "out"}), 1);
+  EXPECT_TRUE(hasSaid("net.pb")) << said;
+}
+
+TEST_F(ToolsTest, AnOutputFolderThatCannotBeWrittenStopsItBeforeTheFirstFrame) {
+  own.write("file", "");
+  EXPECT_EQ(run({sequence(), "--detector", "none", "--output", own / "file/out"}), 1);
+  EXPECT_TRUE(hasSaid("file/out: the folder cannot be made")) << said;
+  EXPECT_FALSE(hasSaid("frames per second")) << said;
+  EXPECT_EQ(run({sequence(), "--detector", "none", "--output", sequence()}), 1);
+  EXPECT_TRUE(hasSaid("is the input, expected another folder")) << said;
+}
+
+TEST_F(ToolsTest, DamagedFramesAreCountedAndTheRestIsDone) {
+  const std::string input = copy("damaged");
+  const auto depth = filesIn(input + "/depth");
+  const std::string whole = readFile(depth[3]);
+  own.write("damaged/depth/" + depth[3].filename().string(), whole.substr(0, whole.size() / 2));
+  savePng(depth[5], cv::Mat::zeros(240, 320, CV_16UC1));
+  savePng(depth[6], cv::Mat(120, 160, CV_16UC1, cv::Scalar(1000)));
+  fs::remove(depth[8]);
+  ASSERT_EQ(run({input, "--detector", "none", "--output", own / "out"}), 0) << said;
+  EXPECT_TRUE(hasSaid("is not a whole image")) << said;
+  EXPECT_TRUE(hasSaid("colour is 320x240 but depth is 160x120")) << said;
+  const auto frames = summaryOf(own / "out").at("frames");
+  EXPECT_EQ(frames.at("read"), kFrames);
+  EXPECT_EQ(frames.at("bad"), 3);
+  EXPECT_EQ(frames.at("lost"), 1);
+  EXPECT_EQ(frames.at("tracked"), kFrames - 4);
+}
+
+TEST_F(ToolsTest, CtrlCEndsItInOrderWithEverythingWritten) {
+  // The same frames over and over: enough for minutes.
+  const std::string input = copy("long");
+  const auto images = filesIn(input + "/rgb");
+  std::string list;
+  for (int i = 0; i < 20000; ++i) {
+    const std::string name = formatStamp(1'000'000'000LL + i * 33'000'000LL);
+    // There and back, so that the camera never jumps.
+    const int phase = i % (2 * kFrames - 2);
+    const int at = phase < kFrames ? phase : 2 * kFrames - 2 - phase;
+    const std::string image = images[static_cast<std::size_t>(at)].filename().string();
+    list += name + " rgb/" + image + " " + name + " depth/" + image + "\n";
+  }
+  own.write("long/associations.txt", list);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string output = own / ("out" + std::to_string(signal));
+    const Program program("posefusion_run",
+                          {input, "--detector", "none", "--output", output, "--save-masks"},
+                          own / "log.txt");
+    // Once some masks are there, frames are being processed.
+    for (int i = 0; i < 600; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      if (!fs::is_directory(output + "/mask")) continue;
+      if (std::distance(fs::directory_iterator(output + "/mask"), {}) > 5) break;
+    }
+    program.send(signal);
+    EXPECT_EQ(program.exitCode(), 128 + signal);
+    EXPECT_NE(program.said().find("interrupted"), std::string::npos) << program.said();
+    const auto frames = summaryOf(output).at("frames");
+    EXPECT_GT(frames.at("tracked").get<int>(), 3);
+    EXPECT_LT(frames.at("read").get<int>(), 20000);
+    EXPECT_EQ(loadTrajectory(output + "/trajectory.txt").size(), frames.at("tracked"));
+    EXPECT_NO_THROW(loadMap(output + "/map.ply"));
+    EXPECT_TRUE(fs::exists(output + "/people.png"));
+    EXPECT_TRUE(fs::exists(output + "/people.json"));
+  }
+}
+
+}  // namespace
+}  // namespace posefusion

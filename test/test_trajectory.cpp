@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
+#include "posefusion/evaluation/trajectory.hpp"
+#include "temporary_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+TEST(Stamp, ParsesDecimalsExactly) {
+  EXPECT_EQ(parseStamp("1341845820.819654"), 1341845820819654000);
+  EXPECT_EQ(parseStamp("1311868163.8697"), 1311868163869700000);
+  EXPECT_EQ(parseStamp("1"), 1000000000);
+  EXPECT_EQ(parseStamp("0.000000001"), 1);
+  EXPECT_EQ(parseStamp(".5"), 500000000);
+  EXPECT_EQ(parseStamp("-0.25"), -250000000);
+  EXPECT_EQ(parseStamp("1.305031102160407066e+09"), 1305031102160407066);
+  EXPECT_EQ(parseStamp("0.0000000014"), 1);
+  EXPECT_EQ(parseStamp("0.0000000015"), 2) << "digits beyond a nanosecond are rounded";
+}
+
+TEST(Stamp, RefusesWhatIsNone) {
+  for (const char* text : {"", ".", "-", "1.2.3", "1,5", "nan", "12s", "1e", "1e+", "1e99", "0x10",
+                           "99999999999999"}) {
+    EXPECT_THROW(parseStamp(text), InputError) << text;
+  }
+}
+
+TEST(Stamp, FormatReadsBackAsTheSame) {
+  EXPECT_EQ(formatStamp(1033333000), "1.033333");
+  EXPECT_EQ(formatStamp(1033333333), "1.033333333");
+  EXPECT_EQ(formatStamp(-250000000), "-0.250000");
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const auto stamp = static_cast<std::int64_t>(random() >> 2);
+    EXPECT_EQ(parseStamp(formatStamp(stamp)), stamp);
+  }
+}
+
+TEST(Trajectory, FileReadsBackAsTheSame) {
+  TemporaryFolder folder;
+  Trajectory written;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 50; ++i) {
+    Vector6d twist;
+    for (int k = 0; k < 6; ++k) twist[k] = unit(random);
+    written.push_back({i * 33333333LL, expSe3(twist)});
+  }
+  saveTrajectory(folder / "t.txt", written, "camera pose");
+  const Trajectory read = loadTrajectory(folder / "t.txt");
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].stamp_ns, written[i].stamp_ns);
+    EXPECT_TRUE(read[i].T_world_camera.isApprox(written[i].T_world_camera, 1e-7));
+  }
+}
+
+TEST(Trajectory, IsSortedByStampAndSkipsComments) {
+  TemporaryFolder folder;
+  const auto path = folder.write("t.txt", "# comment\n\n2.0 0 0 0 0 0 0 1\n1.0,1,0,0,0,0,0,1\r\n");
+  const Trajectory read = loadTrajectory(path);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].stamp_ns, 1000000000);
+  EXPECT_EQ(read[0].T_world_camera.translation().x(), 1.0);
+}
+
+TEST(Trajectory, ErrorsNameFileAndLine) {
+  TemporaryFolder folder;
+  const auto error = [&](const std::string& text) {
+    const auto path = folder.write("t.txt", "1.0 0 0 0 0 0 0 1\n" + text);
+    return errorOf([&] { loadTrajectory(path); });
+  };
+  EXPECT_EQ(error("2.0 0 0 0\n"),
+            folder / "t.txt:2: expected 8 numbers: stamp tx ty tz qx qy qz qw");
+  EXPECT_EQ(error("2.0 0 0 x 0 0 0 1\n"), folder / "t.txt:2: 'x' is no number");
+  EXPECT_EQ(error("2.0 0 0 nan 0 0 0 1\n"), folder / "t.txt:2: 'nan' is no number");
+  EXPECT_EQ(error("2.0 0 0 0 0 0 0 0\n"), folder / "t.txt:2: the quaternion is not of unit length");
+  EXPECT_EQ(error("2.0 0 0 0 0 0 0 1 5\n"), folder / "t.txt:2: more than 8 numbers");
+  EXPECT_EQ(error("frame 0 0 0 0 0 0 1\n"),
+            folder / "t.txt:2: 'frame' is no stamp, expected decimal seconds");
+  EXPECT_NE(
+      errorOf([&] { loadTrajectory(folder / "none.txt"); }).find("none.txt: cannot be opened"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace posefusion
