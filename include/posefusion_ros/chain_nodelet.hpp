@@ -10,6 +10,7 @@
 
 #include "posefusion_ros/messages.hpp"
 #include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/queue_keeper.hpp"
 
 namespace posefusion_ros {
 
@@ -47,6 +48,7 @@ class ChainNodelet : public nodelet::Nodelet {
  private:
   void onInit() final;
 
+  QueueKeeper queues_;
   ros::Publisher rejected_;
   ros::WallTimer ready_timer_;
 };

@@ -19,6 +19,8 @@ constexpr double kThrottleS = 5.0;
 void ChainNodelet::onInit() {
   // An exception that leaves onInit() is a use after free in nodelet 1.10.
   try {
+    queues_.keep(getNodeHandle());
+    queues_.keep(getMTNodeHandle());
     rejected_ = getNodeHandle().advertise<TrackingStatusMsg>(topics::kRejected, kRejectedQueue);
     start();
   } catch (const std::exception& error) {

@@ -69,7 +69,11 @@ class NodeletTest : public DeviceTest {
     ros::param::set(std::string(kName) + "/" + parameter, value);
   }
   void load() { ASSERT_TRUE(loader_.load(kName, "posefusion/openni2_driver", {}, {})); }
-  void unload() { loader_.unload(kName); }
+  /// A thread that is still in a callback of the driver destroys it, a moment after this began.
+  void unload() {
+    loader_.unload(kName);
+    EXPECT_TRUE(eventually([] { return virtualDevice().opened == virtualDevice().closed; }));
+  }
 
   /// The last diagnostics say this, at this level, within ten seconds.
   testing::AssertionResult diagnosed(int level, const std::string& text) {

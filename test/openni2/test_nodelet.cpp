@@ -195,6 +195,23 @@ TEST_F(DriverNodelet, SetsTheExposureWhileItStreams) {
   EXPECT_EQ(virtualDevice().exposure, 9);
 }
 
+// The answer of a service may come before its callback has returned: who unloads then leaves the
+// last reference with the thread of the callback. Without the QueueKeeper this crashes now and then.
+TEST_F(DriverNodelet, GoesWhileAServiceIsCalled) {
+  for (int i = 0; i < 10; ++i) {
+    load();
+    std::atomic<bool> ends{false};
+    std::thread caller([&] {
+      dynamic_reconfigure::Reconfigure call;
+      while (!ends) ros::service::call(std::string(kName) + "/set_parameters", call);
+    });
+    ASSERT_TRUE(streams(1));
+    unload();
+    ends = true;
+    caller.join();
+  }
+}
+
 TEST_F(DriverNodelet, HoldsTheExposureAtItsLimit) {
   set("max_exposure", 25);
   load();

@@ -6,6 +6,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "driver.hpp"
+#include "posefusion_ros/queue_keeper.hpp"
 
 namespace posefusion::openni2 {
 
@@ -22,6 +23,8 @@ class DriverNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {
     try {
+      queues_.keep(getNodeHandle());
+      queues_.keep(getMTNodeHandle());
       auto& own = getMTPrivateNodeHandle();
       driver_ = std::make_unique<Driver>(getNodeHandle(), getPrivateNodeHandle(), getName());
       record_ = own.advertiseService("record", &DriverNodelet::record, this);
@@ -55,6 +58,7 @@ class DriverNodelet : public nodelet::Nodelet {
 
   using Reconfigure = dynamic_reconfigure::Server<OpenNi2DriverConfig>;
 
+  posefusion_ros::QueueKeeper queues_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<Reconfigure> reconfigure_;
   ros::ServiceServer record_;
