@@ -196,7 +196,8 @@ TEST_F(DriverNodelet, SetsTheExposureWhileItStreams) {
 }
 
 // The answer of a service may come before its callback has returned: who unloads then leaves the
-// last reference with the thread of the callback. Without the QueueKeeper this crashes now and then.
+// last reference with the thread of the callback. Without the QueueKeeper this crashes now and
+// then.
 TEST_F(DriverNodelet, GoesWhileAServiceIsCalled) {
   for (int i = 0; i < 10; ++i) {
     load();
