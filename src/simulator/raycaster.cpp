@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/simulator/raycaster.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <array>
 #include <limits>
 #include <stdexcept>
@@ -23,6 +25,12 @@ void copyTriangles(RTCGeometry geometry,
 float* newVertices(RTCGeometry geometry, unsigned slot, std::size_t count) {
   return static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, slot,
                                                      RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
+}
+
+/// In one thread: the tree, and with it ties between neighbours, is always the same.
+void buildTree(RTCScene scene) {
+  tbb::task_arena one_thread(1);
+  one_thread.execute([scene] { rtcCommitScene(scene); });
 }
 
 bool blocks(RTCScene scene, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m) {
@@ -57,8 +65,8 @@ struct RayCaster::State {
 
 RayCaster::RayCaster(const Mesh& world) : state_(std::make_unique<State>()) {
   State& s = *state_;
-  // One thread for building: the tree, and with it ties between neighbours, is always the same.
-  s.device = rtcNewDevice("threads=1,set_affinity=0");
+  // Not "threads=1": that would hold everything that uses TBB in this process to one thread.
+  s.device = rtcNewDevice(nullptr);
   if (s.device == nullptr) throw std::runtime_error("Embree cannot be started");
   s.world = rtcNewScene(s.device);
   RTCGeometry geometry = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -70,11 +78,11 @@ RayCaster::RayCaster(const Mesh& world) : state_(std::make_unique<State>()) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(s.world, geometry, 0);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(s.world);
+  buildTree(s.world);
   s.people = rtcNewScene(s.device);
   rtcSetSceneFlags(s.people, RTC_SCENE_FLAG_DYNAMIC);
   rtcSetSceneBuildQuality(s.people, RTC_BUILD_QUALITY_LOW);
-  rtcCommitScene(s.people);
+  buildTree(s.people);
 }
 
 RayCaster::~RayCaster() {
@@ -116,7 +124,7 @@ void RayCaster::commitPeople() {
     }
     rtcCommitGeometry(person.geometry);
   }
-  rtcCommitScene(state_->people);
+  buildTree(state_->people);
 }
 
 void RayCaster::trace(RayPacket& packet) const {
