@@ -31,7 +31,7 @@ std::string troubleAt(const Eigen::Vector3f& p, const World& world, const RayCas
     RTCRayHit ray{};
     ray.ray.org_x = p.x(), ray.ray.org_y = p.y(), ray.ray.org_z = p.z();
     ray.ray.dir_x = d.x(), ray.ray.dir_y = d.y(), ray.ray.dir_z = d.z();
-    caster.traceWorld(ray);
+    caster.trace(ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
     if (ray.ray.tfar < kClearanceM) return "is closer than 8 cm to a wall or a thing";
     ++hits;

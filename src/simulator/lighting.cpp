@@ -14,8 +14,6 @@ using Eigen::Vector3f;
 
 constexpr int kGatherRays = 64;
 constexpr int kShadowRays = 8;
-constexpr int kPeopleShadowRays = 4;
-constexpr float kShadowReachM = 1.6F;
 constexpr float kPi = 3.14159265F;
 
 /// Two directions across `n`.
@@ -69,7 +67,6 @@ Lighting::Lighting(const World& world, const RayCaster& caster) : world_(world),
   light_.resize(indirect_.size());
   for (std::size_t v = 0; v < light_.size(); ++v) shade(v);
   for (int bounce = 0; bounce < 2; ++bounce) gatherIndirect(bounce);
-  base_ = light_;
   fillCubes();
 }
 
@@ -94,7 +91,7 @@ void Lighting::gatherDirect() {
         for (std::uint32_t i = 0; i < kShadowRays; ++i) {
           const Vector3f q = lampPoint(lamp, i, hash(static_cast<std::uint32_t>(v), 5U));
           const float factor = lampFactor(lamp, q, p, mesh.normals[v]);
-          if (factor > 0.0F && !caster_.worldBlocks(p, q, 0.02F)) sum += factor;
+          if (factor > 0.0F && !caster_.blocks(p, q, 0.02F)) sum += factor;
         }
         direct_[v * lamps + l] = sum / kShadowRays;
       }
@@ -127,7 +124,7 @@ void Lighting::gatherIndirect(int bounce) {
       Vector3f sum = Vector3f::Zero();
       for (int i = 0; i < kGatherRays; ++i) {
         RTCRayHit ray = rayFrom(p, cosineDirection(mesh.normals[v], i, kGatherRays, turn));
-        caster_.traceWorld(ray);
+        caster_.trace(ray);
         if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID) sum += reflected(ray);
       }
       gathered[v] = sum / static_cast<float>(kGatherRays);
@@ -159,57 +156,6 @@ void Lighting::smoothPatches(std::vector<Vector3f>& light) const {
       std::copy(smooth.begin(), smooth.end(), light.begin() + patch.first);
     }
   }
-}
-
-void Lighting::castShadows(const std::vector<Eigen::Vector2f>& people) {
-  const Mesh& mesh = world_.mesh;
-  for (const std::uint32_t v : shaded_) light_[v] = base_[v];
-  shaded_.clear();
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    const Eigen::Vector2f p = mesh.positions[v].head<2>();
-    for (const auto& person : people) {
-      if ((p - person).squaredNorm() > kShadowReachM * kShadowReachM) continue;
-      shaded_.push_back(v);
-      break;
-    }
-  }
-  const std::size_t lamps = world_.lights.size();
-  parallelFor(shaded_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t v = shaded_[k];
-      const Vector3f p = mesh.positions[v] + 4e-3F * mesh.normals[v];
-      for (std::size_t l = 0; l < lamps; ++l) {
-        const Vector3f part = direct_[v * lamps + l] * world_.lights[l].radiance;
-        if (part.maxCoeff() < 0.05F * base_[v].maxCoeff()) continue;
-        int blocked = 0;
-        for (std::uint32_t i = 0; i < kPeopleShadowRays; ++i) {
-          const Vector3f q = lampPoint(world_.lights[l], i, hash(v, 6U));
-          blocked += caster_.peopleBlock(p, q, 0.01F) ? 1 : 0;
-        }
-        light_[v] -= part * (static_cast<float>(blocked) / kPeopleShadowRays);
-      }
-    }
-  });
-}
-
-Vector3f Lighting::at(const Vector3f& position, const Vector3f& normal, float openness) const {
-  const AmbientCube cube = cubeAt(position);
-  Vector3f sum = Vector3f::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto side = static_cast<std::size_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
-    sum += normal[axis] * normal[axis] * cube[side];
-  }
-  sum *= openness;
-  const Vector3f p = position + 0.012F * normal;
-  for (const AreaLight& lamp : world_.lights) {
-    const float factor = lampFactor(lamp, lamp.centre, p, normal);
-    if (factor * lamp.radiance.maxCoeff() < 0.025F) continue;
-    if (caster_.worldBlocks(p, lamp.centre, 0.02F)) continue;
-    const bool shaded = caster_.peopleBlock(p, lamp.centre, 0.02F);
-    // A lamp is wide: its shadow on the body itself is never black.
-    sum += factor * lamp.radiance * (shaded ? 0.25F : 1.0F) * (0.5F + 0.5F * openness);
-  }
-  return sum;
 }
 
 }  // namespace posefusion::simulator

@@ -48,7 +48,7 @@ void Lighting::fillCubes() {
         RTCRayHit ray{};
         ray.ray.org_x = p.x(), ray.ray.org_y = p.y(), ray.ray.org_z = p.z();
         ray.ray.dir_x = d.x(), ray.ray.dir_y = d.y(), ray.ray.dir_z = d.z();
-        caster_.traceWorld(ray);
+        caster_.trace(ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
         const Vector3f radiance = reflected(ray);
         for (int axis = 0; axis < 3; ++axis) {

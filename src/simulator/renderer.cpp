@@ -65,42 +65,26 @@ void forBlocks(const PinholeCamera& camera, const Body& body) {
   });
 }
 
-}  // namespace
-
-Renderer::Renderer(const World& world, const RayCaster& caster, const Lighting& lighting,
-                   const std::vector<Avatar>& people)
-    : world_(world),
-      caster_(caster),
-      lighting_(lighting),
-      people_(people),
-      people_light_(people.size()) {}
-
-void Renderer::lightPeople(const std::vector<std::vector<Vector3f>>& positions,
-                           const std::vector<std::vector<Vector3f>>& normals,
-                           const Vector3f& seen_from) {
-  for (std::size_t person = 0; person < people_.size(); ++person) {
-    auto& light = people_light_[person];
-    const auto& openness = people_[person].openness();
-    light.resize(positions[person].size());
-    parallelFor(light.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const Vector3f& p = positions[person][v];
-        const Vector3f& n = normals[person][v];
-        // Well beyond the horizon too: triangles across it are seen. What is skipped must not keep the
-        // light of an earlier frame: a slim triangle may show a trace of it at its rim.
-        const bool hidden = n.dot(seen_from - p) < -0.6F * (seen_from - p).norm();
-        light[v] = hidden ? Vector3f::Zero() : lighting_.at(p, n, openness[v]);
-      }
-    });
-  }
+Vector3f shadePerson(const RayPacket& packet, int lane, const Scene& scene) {
+  const std::size_t person = packet.rays.hit.geomID[lane] - 1U;
+  const std::uint32_t triangle = packet.rays.hit.primID[lane];
+  const float u = packet.rays.hit.u[lane], v = packet.rays.hit.v[lane];
+  const Avatar& avatar = scene.people.avatar(person);
+  const auto& t = avatar.triangles()[triangle];
+  const auto& light = scene.light.people[person];
+  const Vector3f incoming = (1.0F - u - v) * light[t[0]] + u * light[t[1]] + v * light[t[2]];
+  return avatar.appearance().color(avatar.surfacePoint(triangle, u, v)).cwiseProduct(incoming);
 }
 
-Vector3f Renderer::shadeWorld(const RayPacket& packet, int lane, float pixel_rad) const {
+}  // namespace
+
+Vector3f Renderer::shadeWorld(const RayPacket& packet, int lane, float pixel_rad,
+                              const FrameLight& frame) const {
   const Mesh& mesh = world_.mesh;
   const std::uint32_t triangle = packet.rays.hit.primID[lane];
   const auto& t = mesh.triangles[triangle];
   const float u = packet.rays.hit.u[lane], v = packet.rays.hit.v[lane], w = 1.0F - u - v;
-  const auto& light = lighting_.atVertices();
+  const auto& light = frame.world;
   const Vector3f incoming = w * light[t[0]] + u * light[t[1]] + v * light[t[2]];
   const Eigen::Vector2f uv = w * mesh.uv[t[0]] + u * mesh.uv[t[1]] + v * mesh.uv[t[2]];
   const Material& material = world_.materials[mesh.materials[triangle]];
@@ -113,24 +97,16 @@ Vector3f Renderer::shadeWorld(const RayPacket& packet, int lane, float pixel_rad
   return albedo.cwiseProduct(incoming + material.emission);
 }
 
-Vector3f Renderer::shadePerson(const RayPacket& packet, int lane) const {
-  const std::size_t person = packet.rays.hit.geomID[lane] - 1U;
-  const std::uint32_t triangle = packet.rays.hit.primID[lane];
-  const float u = packet.rays.hit.u[lane], v = packet.rays.hit.v[lane];
-  const Avatar& avatar = people_[person];
-  const auto& t = avatar.triangles()[triangle];
-  const auto& light = people_light_[person];
-  const Vector3f incoming = (1.0F - u - v) * light[t[0]] + u * light[t[1]] + v * light[t[2]];
-  return avatar.appearance().color(avatar.surfacePoint(triangle, u, v)).cwiseProduct(incoming);
-}
-
-Vector3f Renderer::shade(const RayPacket& packet, int lane, float pixel_rad) const {
+Vector3f Renderer::shade(const RayPacket& packet, int lane, float pixel_rad,
+                         const Scene& scene) const {
   const std::uint32_t geometry = packet.rays.hit.geomID[lane];
   if (geometry == RTC_INVALID_GEOMETRY_ID) return Vector3f::Constant(0.02F);
-  return geometry == 0 ? shadeWorld(packet, lane, pixel_rad) : shadePerson(packet, lane);
+  return geometry == 0 ? shadeWorld(packet, lane, pixel_rad, scene.light)
+                       : shadePerson(packet, lane, scene);
 }
 
-void Renderer::color(const PinholeCamera& camera, const Shutter& shutter, cv::Mat& radiance) const {
+void Renderer::color(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
+                     cv::Mat& radiance) const {
   radiance.create(camera.height, camera.width, CV_32FC3);
   const auto pixel_rad = static_cast<float>(1.0 / camera.fx);
   const float weight = 1.0F / static_cast<float>(shutter.samples);
@@ -142,9 +118,10 @@ void Renderer::color(const PinholeCamera& camera, const Shutter& shutter, cv::Ma
       aim(camera, shutter.at(corner.y(), camera.height, s), corner,
           sampleOffset(s, shutter.samples), packet);
       caster_.trace(packet);
+      scene.people.trace(packet);
       for (int lane = 0; lane < 16; ++lane) {
         if (packet.valid[lane] == 0) continue;
-        sum[static_cast<std::size_t>(lane)] += shade(packet, lane, pixel_rad);
+        sum[static_cast<std::size_t>(lane)] += shade(packet, lane, pixel_rad, scene);
       }
     }
     for (int lane = 0; lane < 16; ++lane) {
@@ -156,8 +133,9 @@ void Renderer::color(const PinholeCamera& camera, const Shutter& shutter, cv::Ma
   });
 }
 
-void Renderer::storeDepth(const RayPacket& packet, int lane, const Eigen::Vector2i& pixel,
-                          const Vector3f& axis, DepthView& out) const {
+void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& people,
+                          const Eigen::Vector2i& pixel, const Vector3f& axis,
+                          DepthView& out) const {
   const int row = pixel.y(), col = pixel.x();
   const auto& hit = packet.rays.hit;
   const auto& ray = packet.rays.ray;
@@ -178,12 +156,13 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const Eigen::Vector
     out.gloss.at<float>(row, col) = material.gloss;
     return;
   }
-  const Avatar& avatar = people_[geometry - 1U];
+  const Avatar& avatar = people.avatar(geometry - 1U);
   out.infrared.at<float>(row, col) =
       avatar.appearance().infrared(avatar.surfacePoint(hit.primID[lane], hit.u[lane], hit.v[lane]));
 }
 
-void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, DepthView& out) const {
+void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, const PosedPeople& people,
+                     DepthView& out) const {
   const cv::Size size(camera.width, camera.height);
   for (cv::Mat* image : {&out.depth_m, &out.cosine, &out.infrared, &out.gloss}) {
     image->create(size, CV_32FC1);
@@ -195,9 +174,10 @@ void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, DepthV
     RayPacket packet;
     aim(camera, views, corner, Eigen::Vector2f::Zero(), packet);
     caster_.trace(packet);
+    people.trace(packet);
     for (int lane = 0; lane < 16; ++lane) {
       if (packet.valid[lane] == 0) continue;
-      storeDepth(packet, lane, corner + Eigen::Vector2i(lane % 4, lane / 4), axis, out);
+      storeDepth(packet, lane, people, corner + Eigen::Vector2i(lane % 4, lane / 4), axis, out);
     }
   });
 }

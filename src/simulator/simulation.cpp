@@ -51,37 +51,29 @@ int Simulation::frameCount() const {
 
 SimulatedFrame Simulation::frame(int index) {
   State& s = *state_;
-  const auto number = static_cast<std::uint32_t>(index);
-  s.now = s.exposure.current();
-  const State::Moments m = s.momentsOf(index);
   SimulatedFrame out;
   out.index = index;
-  out.frame.stamp_ns = stampOf(m.color);
-  out.depth_stamp_ns = stampOf(m.depth);
-  out.dropped = uniform(hash(s.scenario.seed, 73U, number)) < s.scenario.dropped;
-  if (out.dropped) return out;
-  out.T_world_camera = s.path->at(m.color);
-  out.exposure = s.now;
-  out.smear_px = s.scenario.color.motion_blur ? s.smearOf(m) : 0.0;
-  out.frame.camera = s.scenario.camera;
-  s.placePeople(m);
-  const Shutter shutter = s.shutterFor(m, s.samplesFor(m, out.smear_px));
-  s.renderer.color(s.scenario.camera, shutter, s.radiance);
-  const bool first = !s.exposure.isSet();
-  if (first) {
-    s.exposure.look(s.radiance);
-    out.exposure = s.now = s.exposure.current();
+  out.dropped = s.isDropped(index);
+  if (out.dropped) {
+    const State::Moments m = s.momentsOf(index, s.exposure.current());
+    out.frame.stamp_ns = stampOf(m.color);
+    out.depth_stamp_ns = stampOf(m.depth);
+    return out;
   }
-  s.color_sensor.expose(s.radiance, s.now, hash(s.scenario.seed, 74U, number), out.frame.color);
-  if (!first) s.exposure.look(s.radiance);
-  s.renderer.depth(s.scenario.camera, viewAt(s.path->at(m.depth), s.within(m, m.depth)), s.view);
-  senseDepth(s.view, s.scenario.camera, s.scenario.depth, hash(s.scenario.seed, 75U, number),
-             out.frame.depth, out.mask);
-  s.observePeople(m, out);
+  State::Shot& shot = s.take(index);
+  int next = index + 1;
+  while (next < frameCount() && s.isDropped(next)) ++next;
+  if (s.exposure.isSet() && next < frameCount()) s.prepareInBackground(next);
+  s.draw(shot, out);
+  out.frame.stamp_ns = stampOf(shot.moments.color);
+  out.depth_stamp_ns = stampOf(shot.moments.depth);
   return out;
 }
 
-void Simulation::jump() { state_->exposure.restart(); }
+void Simulation::jump() {
+  state_->forgetPrepared();
+  state_->exposure.restart();
+}
 
 Trajectory Simulation::truth() const {
   const State& s = *state_;

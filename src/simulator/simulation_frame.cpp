@@ -15,7 +15,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3f;
 
 constexpr double kWalkClearanceM = 0.30;
-constexpr double kShadowReachM = 9.0;
 
 World buildWorld(const Scenario& s) {
   World world;
@@ -55,27 +54,28 @@ Simulation::State::State(const Scenario& s)
           s.people, Walkway(world, kWalkClearanceM),
           [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
           s.start_s + s.duration_s + 1.0),
-      renderer(world, caster, lighting, people),
+      renderer(world, caster),
       color_sensor(s.color),
-      exposure(s.color) {
-  for (const auto& person : people) caster.addPerson(person.triangles(), person.vertexCount());
-  positions.resize(people.size());
-  normals.resize(people.size());
-}
+      exposure(s.color),
+      shots{Shot(caster, people), Shot(caster, people)} {}
 
-Simulation::State::Moments Simulation::State::momentsOf(int index) const {
+Simulation::State::Moments Simulation::State::momentsOf(int index, const Exposure& exposed) const {
   const double color = scenario.start_s + (index + 1) / scenario.fps;
   const float luck = gaussian(hash(scenario.seed, 71U, static_cast<std::uint32_t>(index)));
   const double jitter = std::clamp<double>(luck, -3.0, 3.0) * scenario.depth.jitter_ms;
   const double depth = color + 1e-3 * (scenario.depth.offset_ms + jitter);
-  const double half = scenario.color.motion_blur ? 0.5e-3 * now.time_ms : 0.0;
+  const double half = scenario.color.motion_blur ? 0.5e-3 * exposed.time_ms : 0.0;
   const double rolling = 0.5e-3 * scenario.color.rolling_shutter_ms;
   const double first = std::min(color - half - rolling, depth) - 1e-4;
-  return {color, depth, first, std::max(color + half + rolling, depth) + 1e-4};
+  return {index, exposed, color, depth, first, std::max(color + half + rolling, depth) + 1e-4};
+}
+
+bool Simulation::State::isDropped(int index) const {
+  return uniform(hash(scenario.seed, 73U, static_cast<std::uint32_t>(index))) < scenario.dropped;
 }
 
 double Simulation::State::smearOf(const Moments& m) const {
-  const double half = 0.5e-3 * now.time_ms;
+  const double half = 0.5e-3 * m.exposure.time_ms;
   const Isometry3d T = path->at(m.color - half).inverse() * path->at(m.color + half);
   const PinholeCamera& c = scenario.camera;
   double most = 0.0;
@@ -99,37 +99,48 @@ int Simulation::State::samplesFor(const Moments& m, double smear_px) const {
     const ActorState state = crowd.at(i, m.color);
     const double distance = std::max(0.5, (state.at - eye.head<2>()).norm());
     const double speed = 2.0 * state.speed_m_s + 0.6 * state.talk + 0.5 * state.reach;
-    limbs = std::max(limbs, speed * 1e-3 * now.time_ms / distance * scenario.camera.fx);
+    limbs = std::max(limbs, speed * 1e-3 * m.exposure.time_ms / distance * scenario.camera.fx);
   }
   const int wanted = static_cast<int>(std::ceil(std::max(smear_px, limbs) / 3.0));
   return std::clamp(wanted, c.samples, std::max(c.samples, c.max_samples));
 }
 
-void Simulation::State::placePeople(const Moments& m) {
-  const Vector3f eye = path->at(m.color).translation().cast<float>();
-  std::vector<Eigen::Vector2f> places;
+Simulation::State::Shot& Simulation::State::take(int index) {
+  if (preparing.valid()) preparing.get();
+  if (shots[1 - current].moments.index == index) {
+    current = 1 - current;
+  } else {
+    prepare(shots[current], momentsOf(index, exposure.current()));
+  }
+  return shots[current];
+}
+
+void Simulation::State::prepareInBackground(int index) {
+  preparing = std::async(std::launch::async,
+                         [this, &shot = shots[1 - current],
+                          m = momentsOf(index, exposure.current())] { prepare(shot, m); });
+}
+
+void Simulation::State::forgetPrepared() {
+  if (preparing.valid()) preparing.get();
+  for (Shot& shot : shots) shot.moments.index = -1;
+}
+
+void Simulation::State::prepare(Shot& shot, const Moments& m) const {
+  shot.moments.index = -1;  // until it is whole
+  std::vector<Movement> movements;
   for (std::size_t i = 0; i < people.size(); ++i) {
     const std::uint32_t seed = hash(scenario.seed, 72U, static_cast<std::uint32_t>(i));
-    const int id = static_cast<int>(i);
-    Posture middle;
-    for (const int end : {0, 1}) {
-      const ActorState state = crowd.at(i, end == 0 ? m.first : m.last);
-      people[i].skin(poseBody(people[i].rig(), state, seed), caster.shape(id, end));
-    }
-    const ActorState state = crowd.at(i, 0.5 * (m.first + m.last));
-    middle = poseBody(people[i].rig(), state, seed);
-    people[i].skinNormals(middle, normals[i]);
-    positions[i].resize(people[i].vertexCount());
-    people[i].skin(middle, positions[i][0].data());
-    places.push_back(state.at.cast<float>());
+    const auto posture = [&](const ActorState& state) {
+      return poseBody(people[i].rig(), state, seed);
+    };
+    const ActorState middle = crowd.at(i, 0.5 * (m.first + m.last));
+    movements.push_back({posture(crowd.at(i, m.first)), posture(middle),
+                         posture(crowd.at(i, m.last)), middle.at.cast<float>()});
   }
-  caster.commitPeople();
-  places.erase(
-      std::remove_if(places.begin(), places.end(),
-                     [&](const auto& p) { return (p - eye.head<2>()).norm() > kShadowReachM; }),
-      places.end());
-  lighting.castShadows(places);
-  renderer.lightPeople(positions, normals, eye);
+  shot.people.pose(movements);
+  lighting.illuminate(shot.people, path->at(m.color).translation().cast<float>(), shot.light);
+  shot.moments = m;
 }
 
 Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
@@ -142,11 +153,31 @@ Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
     const double row = shutter.bands > 1 ? (band + 0.5) / shutter.bands - 0.5 : 0.0;
     for (int i = 0; i < moments; ++i) {
       const double part = scenario.color.motion_blur ? (i + 0.5) / moments - 0.5 : 0.0;
-      const double time = m.color + 1e-3 * now.time_ms * part + rolling * row;
-      shutter.views.push_back(viewAt(path->at(time), within(m, time)));
+      const double time = m.color + 1e-3 * m.exposure.time_ms * part + rolling * row;
+      shutter.views.push_back(viewAt(path->at(time), m.within(time)));
     }
   }
   return shutter;
+}
+
+void Simulation::State::draw(const Shot& shot, SimulatedFrame& out) {
+  const Moments& m = shot.moments;
+  const auto number = static_cast<std::uint32_t>(m.index);
+  out.T_world_camera = path->at(m.color);
+  out.exposure = m.exposure;
+  out.smear_px = scenario.color.motion_blur ? smearOf(m) : 0.0;
+  out.frame.camera = scenario.camera;
+  const Shutter shutter = shutterFor(m, samplesFor(m, out.smear_px));
+  renderer.color(scenario.camera, shutter, {shot.people, shot.light}, radiance);
+  const bool first = !exposure.isSet();
+  exposure.look(radiance);
+  if (first) out.exposure = exposure.current();
+  color_sensor.expose(radiance, out.exposure, hash(scenario.seed, 74U, number), out.frame.color);
+  const ViewSample depth_view = viewAt(path->at(m.depth), m.within(m.depth));
+  renderer.depth(scenario.camera, depth_view, shot.people, view);
+  senseDepth(view, scenario.camera, scenario.depth, hash(scenario.seed, 75U, number),
+             out.frame.depth, out.mask);
+  observePeople(m, out);
 }
 
 void Simulation::State::observePeople(const Moments& m, SimulatedFrame& out) const {

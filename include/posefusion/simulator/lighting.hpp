@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "posefusion/simulator/posed_people.hpp"
 #include "posefusion/simulator/raycaster.hpp"
 #include "posefusion/simulator/world.hpp"
 
@@ -13,25 +14,30 @@ namespace posefusion::simulator {
 /// radiance of a white surface that faces there, lamps left out.
 using AmbientCube = std::array<Eigen::Vector3f, 6>;
 
+/// Light on white surfaces at all vertices during one frame, as radiance.
+struct FrameLight {
+  std::vector<Eigen::Vector3f> world;                ///< [vertex], with the people's shadows
+  std::vector<std::vector<Eigen::Vector3f>> people;  ///< [person][vertex]
+  std::vector<std::uint32_t> shaded;                 ///< vertices of the world near people
+};
+
 /// Light at the vertices of the static world: direct light of each lamp with soft shadows, and
 /// what the surfaces throw at each other (radiosity gathered with rays, two bounces). Worked out
-/// once. People take light away from the vertices near them, frame by frame.
+/// once, when it is made; from then on thread safe. People take light away from the vertices near
+/// them, frame by frame.
 class Lighting {
  public:
   Lighting(const World& world, const RayCaster& caster);
 
-  /// Light on a white surface at each vertex, as radiance.
-  const std::vector<Eigen::Vector3f>& atVertices() const { return light_; }
-
-  /// Takes the people's shadows of the last call away and casts those of people who stand at the
-  /// given places of the floor (world, metres). The caster must hold their shapes.
-  void castShadows(const std::vector<Eigen::Vector2f>& people);
-
-  /// Light for a point in the air: lamps with shadows, then the rest by the nearest cubes.
-  Eigen::Vector3f at(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
-                     float openness) const;
+  /// Light of a frame seen from `eye` (world, metres): on the people where they may be seen from
+  /// there, and on the world with the shadows of those near. `light` may be that of another frame.
+  void illuminate(const PosedPeople& people, const Eigen::Vector3f& eye, FrameLight& light) const;
 
  private:
+  void castShadows(const PosedPeople& people, const Eigen::Vector3f& eye, FrameLight& light) const;
+  /// Light for a point of a person: lamps with shadows, then the rest by the nearest cubes.
+  Eigen::Vector3f at(const Eigen::Vector3f& position, const Eigen::Vector3f& normal, float openness,
+                     const PosedPeople& people) const;
   void gatherDirect();
   void gatherIndirect(int bounce);
   void smoothPatches(std::vector<Eigen::Vector3f>& light) const;
@@ -44,9 +50,7 @@ class Lighting {
   const RayCaster& caster_;
   std::vector<float> direct_;  ///< [vertex][lamp], radiance of a white surface for a unit lamp
   std::vector<Eigen::Vector3f> indirect_;
-  std::vector<Eigen::Vector3f> base_;   ///< light without people
-  std::vector<Eigen::Vector3f> light_;  ///< light with people
-  std::vector<std::uint32_t> shaded_;   ///< vertices that people changed
+  std::vector<Eigen::Vector3f> light_;  ///< at the vertices, without people
   Eigen::Vector3f cubes_from_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i cubes_ = Eigen::Vector3i::Zero();
   std::vector<AmbientCube> cube_;

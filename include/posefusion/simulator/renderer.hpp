@@ -42,35 +42,35 @@ struct DepthView {
   cv::Mat gloss;     ///< CV_32FC1
 };
 
+/// What is drawn: the people of a frame and the light of it.
+struct Scene {
+  const PosedPeople& people;
+  const FrameLight& light;
+};
+
 /// Draws the world and the people with rays. Every pixel is its own: the result does not depend on
-/// the number of threads.
+/// the number of threads. Thread safe.
 class Renderer {
  public:
-  Renderer(const World& world, const RayCaster& caster, const Lighting& lighting,
-           const std::vector<Avatar>& people);
-
-  /// Light on the people's vertices for the shapes in the caster; only those who may be seen.
-  void lightPeople(const std::vector<std::vector<Eigen::Vector3f>>& positions,
-                   const std::vector<std::vector<Eigen::Vector3f>>& normals,
-                   const Eigen::Vector3f& seen_from);
+  Renderer(const World& world, const RayCaster& caster) : world_(world), caster_(caster) {}
 
   /// Mean radiance through the shutter, CV_32FC3 R G B.
-  void color(const PinholeCamera& camera, const Shutter& shutter, cv::Mat& radiance) const;
+  void color(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
+             cv::Mat& radiance) const;
 
-  void depth(const PinholeCamera& camera, const ViewSample& view, DepthView& out) const;
+  void depth(const PinholeCamera& camera, const ViewSample& view, const PosedPeople& people,
+             DepthView& out) const;
 
  private:
-  Eigen::Vector3f shade(const RayPacket& packet, int lane, float pixel_rad) const;
-  Eigen::Vector3f shadeWorld(const RayPacket& packet, int lane, float pixel_rad) const;
-  Eigen::Vector3f shadePerson(const RayPacket& packet, int lane) const;
-  void storeDepth(const RayPacket& packet, int lane, const Eigen::Vector2i& pixel,
-                  const Eigen::Vector3f& axis, DepthView& out) const;
+  Eigen::Vector3f shade(const RayPacket& packet, int lane, float pixel_rad,
+                        const Scene& scene) const;
+  Eigen::Vector3f shadeWorld(const RayPacket& packet, int lane, float pixel_rad,
+                             const FrameLight& light) const;
+  void storeDepth(const RayPacket& packet, int lane, const PosedPeople& people,
+                  const Eigen::Vector2i& pixel, const Eigen::Vector3f& axis, DepthView& out) const;
 
   const World& world_;
   const RayCaster& caster_;
-  const Lighting& lighting_;
-  const std::vector<Avatar>& people_;
-  std::vector<std::vector<Eigen::Vector3f>> people_light_;
 };
 
 }  // namespace posefusion::simulator

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <future>
+
 #include "posefusion/simulator/camera_path.hpp"
 #include "posefusion/simulator/crowd.hpp"
 #include "posefusion/simulator/depth_sensor.hpp"
+#include "posefusion/simulator/renderer.hpp"
 #include "posefusion/simulator/simulation.hpp"
 
 namespace posefusion::simulator {
@@ -15,18 +19,38 @@ ViewSample viewAt(const Eigen::Isometry3d& T_world_camera, double time);
 struct Simulation::State {
   explicit State(const Scenario& s);
 
-  /// The frame's moments, seconds of the scenario.
+  /// When a frame is taken (seconds of the scenario), and how long.
   struct Moments {
-    double color, depth, first, last;
+    int index = -1;
+    Exposure exposure;
+    double color = 0.0, depth = 0.0, first = 0.0, last = 0.0;
+
+    double within(double time) const { return (time - first) / (last - first); }
   };
-  Moments momentsOf(int index) const;
-  double within(const Moments& m, double time) const {
-    return (time - m.first) / (m.last - m.first);
-  }
+  Moments momentsOf(int index, const Exposure& exposure) const;
+  bool isDropped(int index) const;
   double smearOf(const Moments& m) const;
   int samplesFor(const Moments& m, double smear_px) const;
-  void placePeople(const Moments& m);
   Shutter shutterFor(const Moments& m, int samples) const;
+
+  /// A frame about to be taken: its people posed and lit.
+  struct Shot {
+    Shot(const RayCaster& world, const std::vector<Avatar>& avatars) : people(world, avatars) {}
+
+    Moments moments;
+    PosedPeople people;
+    FrameLight light;
+  };
+  /// The shot of this frame: the one prepared in the background, or prepared now.
+  Shot& take(int index);
+  /// Begins to prepare a shot while that of take() is drawn. Its exposure is that of now, so it
+  /// answers to the pictures up to the last but one, as a camera's does.
+  void prepareInBackground(int index);
+  void forgetPrepared();
+  void prepare(Shot& shot, const Moments& m) const;
+
+  /// Colour, depth and truth of the shot.
+  void draw(const Shot& shot, SimulatedFrame& out);
   void observePeople(const Moments& m, SimulatedFrame& out) const;
 
   Scenario scenario;
@@ -39,10 +63,11 @@ struct Simulation::State {
   Renderer renderer;
   ColorSensor color_sensor;
   AutoExposure exposure;
-  std::vector<std::vector<Eigen::Vector3f>> positions, normals;
+  std::array<Shot, 2> shots;
+  std::size_t current = 0;
   cv::Mat radiance;
   DepthView view;
-  Exposure now;
+  std::future<void> preparing;  // last: ends before what it works on
 };
 
 }  // namespace posefusion::simulator
