@@ -15,28 +15,53 @@ constexpr double kSteepestRad = 1.53;
 /// The pattern is matched in windows: errors of neighbours hang together over so many pixels.
 constexpr int kWindowPx = 4;
 
-/// Smooth noise of unit variance over windows, plus its own for the pixel.
-float correlatedNoise(int col, int row, std::uint32_t key) {
-  const float x = static_cast<float>(col) / kWindowPx, y = static_cast<float>(row) / kWindowPx;
-  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-  const float tx = x - static_cast<float>(ix), ty = y - static_cast<float>(iy);
-  const auto at = [&](int a, int b) {
-    return gaussian(hash(key, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)));
-  };
-  const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
-  const float sum =
-      w[0] * at(ix, iy) + w[1] * at(ix + 1, iy) + w[2] * at(ix, iy + 1) + w[3] * at(ix + 1, iy + 1);
-  const float norm = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3]);
-  const float own =
-      gaussian(hash(key, 0x51U, static_cast<std::uint32_t>(col), static_cast<std::uint32_t>(row)));
-  return 0.8F * sum / norm + 0.6F * own;
-}
+/// Random numbers that neighbours share, drawn once for a row.
+class RowLuck {
+ public:
+  RowLuck(int row, int width, std::uint32_t key) : key_(key), row_(row) {
+    const auto draw = [](int count, std::vector<float>& out, auto&& seed) {
+      for (int i = 0; i < count; ++i) {
+        out.push_back(gaussian(seed(static_cast<std::uint32_t>(i))));
+      }
+    };
+    const auto window = static_cast<std::uint32_t>(row / kWindowPx);
+    const auto block = static_cast<std::uint32_t>(row) / 2U;
+    draw(width / kWindowPx + 2, above_, [&](auto i) { return hash(key, i, window); });
+    draw(width / kWindowPx + 2, below_, [&](auto i) { return hash(key, i, window + 1U); });
+    draw(width / 2 + 1, across_, [&](auto i) { return hash(key, i, block); });
+    draw(width / 2 + 1, along_, [&](auto i) { return hash(hash(key, i, block), 1U); });
+  }
+
+  /// Smooth noise of unit variance over windows, plus the pixel's own.
+  float correlated(int col) const {
+    const float x = static_cast<float>(col) / kWindowPx, y = static_cast<float>(row_) / kWindowPx;
+    const auto ix = static_cast<std::size_t>(x);
+    const float tx = x - std::floor(x), ty = y - std::floor(y);
+    const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
+    const float sum =
+        w[0] * above_[ix] + w[1] * above_[ix + 1] + w[2] * below_[ix] + w[3] * below_[ix + 1];
+    const float norm = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3]);
+    const float own = gaussian(
+        hash(key_, 0x51U, static_cast<std::uint32_t>(col), static_cast<std::uint32_t>(row_)));
+    return 0.8F * sum / norm + 0.6F * own;
+  }
+
+  /// Standard normal, for blocks of 2x2 pixels.
+  float across(int col) const { return across_[static_cast<std::size_t>(col) / 2]; }
+  float along(int col) const { return along_[static_cast<std::size_t>(col) / 2]; }
+
+ private:
+  std::uint32_t key_;
+  int row_;
+  std::vector<float> above_, below_, across_, along_;
+};
+
+float angleOf(float cosine) { return std::acos(std::min(1.0F, cosine)); }
 
 /// Chance that the pattern is not found: too dark, seen too flat, or mirrored away.
-float dropoutChance(float z, float cosine, float infrared, float gloss) {
+float dropoutChance(float z, float cosine, float theta, float infrared, float gloss) {
   const float signal = infrared * std::sqrt(cosine) / (0.25F + 0.11F * z * z);
   float lost = 1.0F / (1.0F + std::exp((signal - 0.055F) / 0.011F));
-  const float theta = std::acos(std::min(1.0F, cosine));
   lost = std::max(lost, std::clamp((theta - 1.36F) / 0.12F, 0.0F, 1.0F));
   if (gloss > 0.2F) {
     // Seen head on the reflection blinds, seen flat nothing comes back.
@@ -67,13 +92,11 @@ struct Source {
 
 /// Where the pixel's depth comes from: lateral noise takes it from a neighbour.
 Source displaced(const DepthView& view, const DepthConfig& config, int col, int row,
-                 std::uint32_t key) {
-  const float theta = std::acos(std::min(1.0F, view.cosine.at<float>(row, col)));
+                 const RowLuck& luck) {
+  const float theta = angleOf(view.cosine.at<float>(row, col));
   const double sigma = config.lateral * lateralSigmaPx(std::min<double>(theta, kSteepestRad)) * 0.7;
-  const std::uint32_t h =
-      hash(key, static_cast<std::uint32_t>(col) / 2U, static_cast<std::uint32_t>(row) / 2U);
-  const int dx = static_cast<int>(std::lround(sigma * gaussian(h)));
-  const int dy = static_cast<int>(std::lround(sigma * gaussian(hash(h, 1U))));
+  const int dx = static_cast<int>(std::lround(sigma * luck.across(col)));
+  const int dy = static_cast<int>(std::lround(sigma * luck.along(col)));
   return {std::clamp(col + dx, 0, view.depth_m.cols - 1),
           std::clamp(row + dy, 0, view.depth_m.rows - 1)};
 }
@@ -137,22 +160,23 @@ struct Sensing {
 };
 
 /// The depth (m) reported at (col, row) for what is at `s`; 0: none.
-double reported(const Sensing& f, const Source& s, int col, int row) {
+double reported(const Sensing& f, const Source& s, int col, int row, const RowLuck& noise) {
   double z = f.view.depth_m.at<float>(s.row, s.col);
   if (z <= 0.0 || !f.config.noise) return z;
   const float cosine = f.view.cosine.at<float>(s.row, s.col);
+  const float theta = angleOf(cosine);
   // Dropouts come as specks of a few pixels rather than single ones.
   const std::uint32_t speck = hash(f.key, 0x77U, static_cast<std::uint32_t>(col) / 3U,
                                    static_cast<std::uint32_t>(row) / 3U);
   const std::uint32_t own = hash(speck, static_cast<std::uint32_t>(col % 3 * 3 + row % 3));
   const float luck = 0.6F * uniform(speck) + 0.4F * uniform(own);
   const float lost =
-      dropoutChance(static_cast<float>(z), cosine, f.view.infrared.at<float>(s.row, s.col),
+      dropoutChance(static_cast<float>(z), cosine, theta, f.view.infrared.at<float>(s.row, s.col),
                     f.view.gloss.at<float>(s.row, s.col));
   if (luck < f.config.dropouts * lost) return 0.0;
-  const double sigma = f.config.axial * axialSigmaM(z, std::acos(std::min(1.0F, cosine)));
+  const double sigma = f.config.axial * axialSigmaM(z, theta);
   z *= 1.0 + 0.5 * z * f.distortion.at(col, row);
-  z = std::max(z + sigma * correlatedNoise(col, row, f.key), 0.05);
+  z = std::max(z + sigma * noise.correlated(col), 0.05);
   return f.fb_steps / std::max(1.0, std::round(f.fb_steps / z));
 }
 
@@ -170,11 +194,13 @@ void senseDepth(const DepthView& view, const PinholeCamera& camera, const DepthC
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
       shadow.assign(static_cast<std::size_t>(camera.width), 0);
       if (config.noise && config.shadow) markShadow(view, camera, config, row, shadow);
+      const RowLuck luck(row, camera.width, key);
       for (int col = 0; col < camera.width; ++col) {
         const int from = std::clamp(col - shift, 0, camera.width - 1);
-        const Source s = config.noise ? displaced(view, config, from, row, key) : Source{from, row};
+        const Source s =
+            config.noise ? displaced(view, config, from, row, luck) : Source{from, row};
         const double z =
-            shadow[static_cast<std::size_t>(from)] != 0 ? 0.0 : reported(frame, s, col, row);
+            shadow[static_cast<std::size_t>(from)] != 0 ? 0.0 : reported(frame, s, col, row, luck);
         const bool seen = z > 0.0 && z >= config.min_m && z <= config.max_m;
         mask.at<std::uint8_t>(row, col) = view.person.at<std::uint8_t>(s.row, s.col);
         depth_mm.at<std::uint16_t>(row, col) =
