@@ -29,21 +29,32 @@ void buildTree(RTCScene scene) {
   one_thread.execute([scene] { rtcCommitScene(scene); });
 }
 
-bool blocks(RTCScene scene, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m) {
-  const Eigen::Vector3f d = b - a;
-  const float length = d.norm();
-  if (length <= 2.0F * margin_m) return false;
-  RTCRay ray{};
-  ray.org_x = a.x(), ray.org_y = a.y(), ray.org_z = a.z();
-  ray.dir_x = d.x(), ray.dir_y = d.y(), ray.dir_z = d.z();
-  ray.tnear = margin_m / length;
-  ray.tfar = 1.0F - margin_m / length;
-  ray.time = 0.5F;
-  ray.mask = 0xFFFFFFFFU;
+std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m) {
+  alignas(64) RTCRay16 ray{};
+  alignas(64) int valid[16]{};
+  for (std::size_t i = 0; i < 16; ++i) {
+    // Where Embree has no packets of 16 it goes by the range of the ray, not by `valid`.
+    ray.tfar[i] = -1.0F;
+    if (!sight.asked[i]) continue;
+    const Eigen::Vector3f& from = sight.from[i];
+    const Eigen::Vector3f d = sight.to[i] - from;
+    const float length = d.norm();
+    if (length <= 2.0F * margin_m) continue;
+    valid[i] = -1;
+    ray.org_x[i] = from.x(), ray.org_y[i] = from.y(), ray.org_z[i] = from.z();
+    ray.dir_x[i] = d.x(), ray.dir_y[i] = d.y(), ray.dir_z[i] = d.z();
+    ray.tnear[i] = margin_m / length;
+    ray.tfar[i] = 1.0F - margin_m / length;
+    ray.time[i] = 0.5F;
+    ray.mask[i] = 0xFFFFFFFFU;
+    ray.flags[i] = 0;
+  }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, &ray);
-  return ray.tfar < 0.0F;
+  rtcOccluded16(valid, scene, &context, &ray);
+  std::array<bool, 16> blocked;
+  for (std::size_t i = 0; i < 16; ++i) blocked[i] = valid[i] != 0 && ray.tfar[i] < 0.0F;
+  return blocked;
 }
 
 }  // namespace posefusion::simulator

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <embree3/rtcore.h>
-
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <vector>
+
+#include "posefusion/simulator/raycaster.hpp"
 
 namespace posefusion::simulator {
 
@@ -29,7 +28,7 @@ float* makeVertices(RTCGeometry geometry, unsigned shape, std::size_t count);
 /// the same.
 void buildTree(RTCScene scene);
 
-/// Whether anything in the scene lies between the two points, apart from `margin_m` at both ends.
-bool blocks(RTCScene scene, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m);
+/// Whether anything in the scene lies between the points, apart from `margin_m` at both ends.
+std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m);
 
 }  // namespace posefusion::simulator

@@ -80,20 +80,27 @@ void Lighting::shade(std::size_t vertex) {
 
 void Lighting::gatherDirect() {
   const Mesh& mesh = world_.mesh;
-  const std::size_t lamps = world_.lights.size();
-  direct_.assign(mesh.positions.size() * lamps, 0.0F);
-  parallelFor(mesh.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Vector3f p = mesh.positions[v] + 4e-3F * mesh.normals[v];
+  const std::size_t lamps = world_.lights.size(), count = mesh.positions.size();
+  direct_.assign(count * lamps, 0.0F);
+  parallelFor((count + 15) / 16, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t packet = begin; packet < end; ++packet) {
+      const std::size_t first = 16 * packet, size = std::min<std::size_t>(16, count - first);
       for (std::size_t l = 0; l < lamps; ++l) {
-        const AreaLight& lamp = world_.lights[l];
-        float sum = 0.0F;
-        for (std::uint32_t i = 0; i < kShadowRays; ++i) {
-          const Vector3f q = lampPoint(lamp, i, hash(static_cast<std::uint32_t>(v), 5U));
-          const float factor = lampFactor(lamp, q, p, mesh.normals[v]);
-          if (factor > 0.0F && !caster_.blocks(p, q, 0.02F)) sum += factor;
+        for (std::uint32_t ray = 0; ray < kShadowRays; ++ray) {
+          SightPacket sight;
+          std::array<float, 16> factor{};
+          for (std::size_t i = 0; i < size; ++i) {
+            const std::size_t v = first + i;
+            sight.from[i] = mesh.positions[v] + 4e-3F * mesh.normals[v];
+            sight.to[i] = lampPoint(world_.lights[l], ray, hash(static_cast<std::uint32_t>(v), 5U));
+            factor[i] = lampFactor(world_.lights[l], sight.to[i], sight.from[i], mesh.normals[v]);
+            sight.asked[i] = factor[i] > 0.0F;
+          }
+          const auto blocked = caster_.blocks(sight, 0.02F);
+          for (std::size_t i = 0; i < size; ++i) {
+            if (!blocked[i]) direct_[(first + i) * lamps + l] += factor[i] / kShadowRays;
+          }
         }
-        direct_[v * lamps + l] = sum / kShadowRays;
       }
     }
   });

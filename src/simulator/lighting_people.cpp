@@ -12,45 +12,50 @@ namespace {
 
 using Eigen::Vector3f;
 
+constexpr std::size_t kPacket = 16;
 constexpr int kShadowRays = 4;
 constexpr float kShadowReachM = 1.6F;
 constexpr float kSeenReachM = 9.0F;  // shadows further away are not worth their rays
 
+/// Calls body(first, count) for packets of [0, total), in parallel.
+template <typename Body>
+void forPackets(std::size_t total, const Body& body) {
+  parallelFor((total + kPacket - 1) / kPacket, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = kPacket * begin; first < std::min(kPacket * end, total);
+         first += kPacket) {
+      body(first, std::min(kPacket, total - first));
+    }
+  });
+}
+
 }  // namespace
 
-void Lighting::illuminate(const PosedPeople& people, const Vector3f& eye, FrameLight& light) const {
-  castShadows(people, eye, light);
-  light.people.resize(people.size());
-  for (std::size_t person = 0; person < people.size(); ++person) {
-    const auto& positions = people.positions(person);
-    const auto& normals = people.normals(person);
-    const auto& openness = people.avatar(person).openness();
+void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& people,
+                          const Vector3f& eye, FrameLight& light) const {
+  auto places = surface.places;
+  const auto is_far = [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReachM; };
+  places.erase(std::remove_if(places.begin(), places.end(), is_far), places.end());
+  castShadows(places, people, light);
+  light.people.resize(surface.positions.size());
+  for (std::size_t person = 0; person < light.people.size(); ++person) {
+    const Vector3f* positions = surface.positions[person].data();
+    const Vector3f* normals = surface.normals[person].data();
+    const float* openness = people.avatar(person).openness().data();
     auto& out = light.people[person];
-    out.resize(positions.size());
-    parallelFor(out.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const Vector3f& p = positions[v];
-        const Vector3f& n = normals[v];
-        // Well beyond the horizon too: triangles across it are seen. What is skipped must not keep
-        // the light of an earlier frame: a slim triangle may show a trace of it at its rim.
-        const bool hidden = n.dot(eye - p) < -0.6F * (eye - p).norm();
-        out[v] = hidden ? Vector3f::Zero() : at(p, n, openness[v], people);
-      }
+    out.resize(surface.positions[person].size());
+    forPackets(out.size(), [&](std::size_t first, std::size_t count) {
+      this->light({count, positions + first, normals + first, openness + first}, people, eye,
+                  &out[first]);
     });
   }
 }
 
-void Lighting::castShadows(const PosedPeople& people, const Vector3f& eye,
+void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
                            FrameLight& light) const {
   const Mesh& mesh = world_.mesh;
   if (light.world.size() != light_.size()) light.world = light_;
   for (const std::uint32_t v : light.shaded) light.world[v] = light_[v];
   light.shaded.clear();
-  std::vector<Eigen::Vector2f> places = people.places();
-  places.erase(
-      std::remove_if(places.begin(), places.end(),
-                     [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReachM; }),
-      places.end());
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     const Eigen::Vector2f p = mesh.positions[v].head<2>();
     const bool near = std::any_of(places.begin(), places.end(), [&](const auto& place) {
@@ -59,41 +64,79 @@ void Lighting::castShadows(const PosedPeople& people, const Vector3f& eye,
     if (near) light.shaded.push_back(v);
   }
   const std::size_t lamps = world_.lights.size();
-  parallelFor(light.shaded.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t v = light.shaded[k];
-      const Vector3f p = mesh.positions[v] + 4e-3F * mesh.normals[v];
-      for (std::size_t l = 0; l < lamps; ++l) {
-        const Vector3f part = direct_[v * lamps + l] * world_.lights[l].radiance;
-        if (part.maxCoeff() < 0.05F * light_[v].maxCoeff()) continue;
-        int blocked = 0;
-        for (std::uint32_t i = 0; i < kShadowRays; ++i) {
-          const Vector3f q = lampPoint(world_.lights[l], i, hash(v, 6U));
-          blocked += people.block(p, q, 0.01F) ? 1 : 0;
-        }
-        light.world[v] -= part * (static_cast<float>(blocked) / kShadowRays);
+  forPackets(light.shaded.size(), [&](std::size_t first, std::size_t count) {
+    const std::uint32_t* vertices = &light.shaded[first];
+    for (std::size_t l = 0; l < lamps; ++l) {
+      const auto taken = shadowed(people, vertices, count, l);
+      for (std::size_t i = 0; i < count; ++i) {
+        const float part = taken[i] * direct_[vertices[i] * lamps + l];
+        light.world[vertices[i]] -= part * world_.lights[l].radiance;
       }
     }
   });
 }
 
-Vector3f Lighting::at(const Vector3f& position, const Vector3f& normal, float openness,
-                      const PosedPeople& people) const {
+std::array<float, 16> Lighting::shadowed(const PosedPeople& people, const std::uint32_t* vertices,
+                                         std::size_t count, std::size_t lamp) const {
+  const Mesh& mesh = world_.mesh;
+  const AreaLight& area = world_.lights[lamp];
+  std::array<float, kPacket> taken{};
+  SightPacket sight;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t v = vertices[i];
+    const float part = direct_[v * world_.lights.size() + lamp] * area.radiance.maxCoeff();
+    sight.asked[i] = part >= 0.05F * light_[v].maxCoeff();
+    sight.from[i] = mesh.positions[v] + 4e-3F * mesh.normals[v];
+  }
+  if (std::find(sight.asked.begin(), sight.asked.end(), true) == sight.asked.end()) return taken;
+  for (std::uint32_t ray = 0; ray < kShadowRays; ++ray) {
+    for (std::size_t i = 0; i < count; ++i) {
+      sight.to[i] = lampPoint(area, ray, hash(vertices[i], 6U));
+    }
+    const auto blocked = people.block(sight, 0.01F);
+    for (std::size_t i = 0; i < count; ++i) taken[i] += blocked[i] ? 1.0F / kShadowRays : 0.0F;
+  }
+  return taken;
+}
+
+void Lighting::light(const Skin& skin, const PosedPeople& people, const Vector3f& eye,
+                     Vector3f* out) const {
+  std::array<bool, kPacket> seen{};
+  SightPacket sight;
+  for (std::size_t i = 0; i < skin.count; ++i) {
+    const Vector3f& p = skin.positions[i];
+    const Vector3f& n = skin.normals[i];
+    // Well beyond the horizon too: triangles across it are seen. What is skipped must not keep the
+    // light of an earlier frame: a slim triangle may show a trace of it at its rim.
+    seen[i] = n.dot(eye - p) >= -0.6F * (eye - p).norm();
+    out[i] = seen[i] ? Vector3f(skin.openness[i] * ambient(p, n)) : Vector3f::Zero();
+    sight.from[i] = p + 0.012F * n;
+  }
+  for (const AreaLight& lamp : world_.lights) {
+    std::array<float, kPacket> factor{};
+    for (std::size_t i = 0; i < skin.count; ++i) {
+      sight.to[i] = lamp.centre;
+      if (seen[i]) factor[i] = lampFactor(lamp, lamp.centre, sight.from[i], skin.normals[i]);
+      sight.asked[i] = factor[i] * lamp.radiance.maxCoeff() >= 0.025F;
+    }
+    const auto dark = caster_.blocks(sight, 0.02F);
+    for (std::size_t i = 0; i < skin.count; ++i) sight.asked[i] = sight.asked[i] && !dark[i];
+    const auto shaded = people.block(sight, 0.02F);
+    for (std::size_t i = 0; i < skin.count; ++i) {
+      if (!sight.asked[i]) continue;
+      // A lamp is wide: its shadow on the body itself is never black.
+      out[i] +=
+          factor[i] * (shaded[i] ? 0.25F : 1.0F) * (0.5F + 0.5F * skin.openness[i]) * lamp.radiance;
+    }
+  }
+}
+
+Vector3f Lighting::ambient(const Vector3f& position, const Vector3f& normal) const {
   const AmbientCube cube = cubeAt(position);
   Vector3f sum = Vector3f::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const auto side = static_cast<std::size_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
     sum += normal[axis] * normal[axis] * cube[side];
-  }
-  sum *= openness;
-  const Vector3f p = position + 0.012F * normal;
-  for (const AreaLight& lamp : world_.lights) {
-    const float factor = lampFactor(lamp, lamp.centre, p, normal);
-    if (factor * lamp.radiance.maxCoeff() < 0.025F) continue;
-    if (caster_.blocks(p, lamp.centre, 0.02F)) continue;
-    const bool shaded = people.block(p, lamp.centre, 0.02F);
-    // A lamp is wide: its shadow on the body itself is never black.
-    sum += factor * lamp.radiance * (shaded ? 0.25F : 1.0F) * (0.5F + 0.5F * openness);
   }
   return sum;
 }

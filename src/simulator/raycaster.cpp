@@ -59,8 +59,8 @@ void RayCaster::trace(RTCRayHit& ray) const {
   rtcIntersect1(state_->scene.get(), &context, &ray);
 }
 
-bool RayCaster::blocks(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m) const {
-  return simulator::blocks(state_->scene.get(), a, b, margin_m);
+std::array<bool, 16> RayCaster::blocks(const SightPacket& sight, float margin_m) const {
+  return simulator::blocks(state_->scene.get(), sight, margin_m);
 }
 
 RTCDevice RayCaster::device() const { return state_->device.get(); }

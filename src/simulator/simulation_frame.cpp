@@ -57,17 +57,16 @@ Simulation::State::State(const Scenario& s)
       renderer(world, caster),
       color_sensor(s.color),
       exposure(s.color),
-      shots{Shot(caster, people), Shot(caster, people)} {}
+      shots{Shot(caster, people, s.color), Shot(caster, people, s.color)} {}
 
 Simulation::State::Moments Simulation::State::momentsOf(int index, const Exposure& exposed) const {
   const double color = scenario.start_s + (index + 1) / scenario.fps;
   const float luck = gaussian(hash(scenario.seed, 71U, static_cast<std::uint32_t>(index)));
   const double jitter = std::clamp<double>(luck, -3.0, 3.0) * scenario.depth.jitter_ms;
   const double depth = color + 1e-3 * (scenario.depth.offset_ms + jitter);
-  const double half = scenario.color.motion_blur ? 0.5e-3 * exposed.time_ms : 0.0;
-  const double rolling = 0.5e-3 * scenario.color.rolling_shutter_ms;
-  const double first = std::min(color - half - rolling, depth) - 1e-4;
-  return {index, exposed, color, depth, first, std::max(color + half + rolling, depth) + 1e-4};
+  const double exposed_s = scenario.color.motion_blur ? 1e-3 * exposed.time_ms : 0.0;
+  const double half = 0.5 * (exposed_s + 1e-3 * scenario.color.rolling_shutter_ms) + 1e-4;
+  return {index, exposed, color, depth, color - half, color + half};
 }
 
 bool Simulation::State::isDropped(int index) const {
@@ -126,20 +125,36 @@ void Simulation::State::forgetPrepared() {
   for (Shot& shot : shots) shot.moments.index = -1;
 }
 
-void Simulation::State::prepare(Shot& shot, const Moments& m) const {
-  shot.moments.index = -1;  // until it is whole
-  std::vector<Movement> movements;
+Postures Simulation::State::posturesAt(double time) const {
+  Postures postures;
   for (std::size_t i = 0; i < people.size(); ++i) {
     const std::uint32_t seed = hash(scenario.seed, 72U, static_cast<std::uint32_t>(i));
-    const auto posture = [&](const ActorState& state) {
-      return poseBody(people[i].rig(), state, seed);
-    };
-    const ActorState middle = crowd.at(i, 0.5 * (m.first + m.last));
-    movements.push_back({posture(crowd.at(i, m.first)), posture(middle),
-                         posture(crowd.at(i, m.last)), middle.at.cast<float>()});
+    postures.push_back(poseBody(people[i].rig(), crowd.at(i, time), seed));
   }
-  shot.people.pose(movements);
-  lighting.illuminate(shot.people, path->at(m.color).translation().cast<float>(), shot.light);
+  return postures;
+}
+
+void Simulation::State::prepare(Shot& shot, const Moments& m) const {
+  shot.moments.index = -1;  // until it is whole
+  const Postures middle = posturesAt(m.color);
+  if (shot.in_color.moves()) {
+    shot.in_color.pose({posturesAt(m.first), posturesAt(m.last)});
+  } else {
+    shot.in_color.pose({middle});
+  }
+  shot.in_depth.pose({posturesAt(m.depth)});
+  PeopleSurface& surface = shot.surface;
+  surface.positions.resize(people.size());
+  surface.normals.resize(people.size());
+  surface.places.clear();
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    surface.positions[i].resize(people[i].vertexCount());
+    people[i].skin(middle[i], surface.positions[i][0].data());
+    people[i].skinNormals(middle[i], surface.normals[i]);
+    surface.places.push_back(crowd.at(i, m.color).at.cast<float>());
+  }
+  const Vector3f eye = path->at(m.color).translation().cast<float>();
+  lighting.illuminate(surface, shot.in_color, eye, shot.light);
   shot.moments = m;
 }
 
@@ -168,23 +183,22 @@ void Simulation::State::draw(const Shot& shot, SimulatedFrame& out) {
   out.smear_px = scenario.color.motion_blur ? smearOf(m) : 0.0;
   out.frame.camera = scenario.camera;
   const Shutter shutter = shutterFor(m, samplesFor(m, out.smear_px));
-  renderer.color(scenario.camera, shutter, {shot.people, shot.light}, radiance);
+  renderer.color(scenario.camera, shutter, {shot.in_color, shot.light}, radiance);
   const bool first = !exposure.isSet();
   exposure.look(radiance);
   if (first) out.exposure = exposure.current();
   color_sensor.expose(radiance, out.exposure, hash(scenario.seed, 74U, number), out.frame.color);
-  const ViewSample depth_view = viewAt(path->at(m.depth), m.within(m.depth));
-  renderer.depth(scenario.camera, depth_view, shot.people, view);
+  const ViewSample depth_view = viewAt(path->at(m.depth), 0.0);
+  renderer.depth(scenario.camera, depth_view, shot.in_depth, view);
   senseDepth(view, scenario.camera, scenario.depth, hash(scenario.seed, 75U, number),
              out.frame.depth, out.mask);
   observePeople(m, out);
 }
 
 void Simulation::State::observePeople(const Moments& m, SimulatedFrame& out) const {
+  const Postures postures = posturesAt(m.color);
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const std::uint32_t seed = hash(scenario.seed, 72U, static_cast<std::uint32_t>(i));
-    const Posture posture = poseBody(people[i].rig(), crowd.at(i, m.color), seed);
-    PersonTruth truth = observe(static_cast<int>(i), jointsOf(people[i].rig(), posture),
+    PersonTruth truth = observe(static_cast<int>(i), jointsOf(people[i].rig(), postures[i]),
                                 scenario.camera, out.T_world_camera, view);
     truth.name = scenario.people[i].name;
     const bool near =

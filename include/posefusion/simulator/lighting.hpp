@@ -14,6 +14,12 @@ namespace posefusion::simulator {
 /// radiance of a white surface that faces there, lamps left out.
 using AmbientCube = std::array<Eigen::Vector3f, 6>;
 
+/// The people's surfaces at one moment, world.
+struct PeopleSurface {
+  std::vector<std::vector<Eigen::Vector3f>> positions, normals;  ///< [person][vertex]
+  std::vector<Eigen::Vector2f> places;                           ///< where they stand
+};
+
 /// Light on white surfaces at all vertices during one frame, as radiance.
 struct FrameLight {
   std::vector<Eigen::Vector3f> world;                ///< [vertex], with the people's shadows
@@ -30,14 +36,27 @@ class Lighting {
   Lighting(const World& world, const RayCaster& caster);
 
   /// Light of a frame seen from `eye` (world, metres): on the people where they may be seen from
-  /// there, and on the world with the shadows of those near. `light` may be that of another frame.
-  void illuminate(const PosedPeople& people, const Eigen::Vector3f& eye, FrameLight& light) const;
+  /// there, and on the world with the shadows of those near. `people` cast them. `light` may be
+  /// that of another frame.
+  void illuminate(const PeopleSurface& surface, const PosedPeople& people,
+                  const Eigen::Vector3f& eye, FrameLight& light) const;
 
  private:
-  void castShadows(const PosedPeople& people, const Eigen::Vector3f& eye, FrameLight& light) const;
-  /// Light for a point of a person: lamps with shadows, then the rest by the nearest cubes.
-  Eigen::Vector3f at(const Eigen::Vector3f& position, const Eigen::Vector3f& normal, float openness,
-                     const PosedPeople& people) const;
+  void castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
+                   FrameLight& light) const;
+  /// The share of a lamp's light that people take from up to 16 vertices of the world.
+  std::array<float, 16> shadowed(const PosedPeople& people, const std::uint32_t* vertices,
+                                 std::size_t count, std::size_t lamp) const;
+  /// Light on up to 16 points of a person: lamps with shadows, then the rest by the nearest cubes.
+  struct Skin {
+    std::size_t count = 0;
+    const Eigen::Vector3f* positions = nullptr;
+    const Eigen::Vector3f* normals = nullptr;
+    const float* openness = nullptr;
+  };
+  void light(const Skin& skin, const PosedPeople& people, const Eigen::Vector3f& eye,
+             Eigen::Vector3f* out) const;
+  Eigen::Vector3f ambient(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const;
   void gatherDirect();
   void gatherIndirect(int bounce);
   void smoothPatches(std::vector<Eigen::Vector3f>& light) const;

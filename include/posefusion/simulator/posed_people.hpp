@@ -9,45 +9,35 @@
 
 namespace posefusion::simulator {
 
-/// A person during one frame: from its first to its last moment.
-struct Movement {
-  Posture first, middle, last;
-  Eigen::Vector2f at;  ///< the place of the floor where the person stands in the middle
-};
+/// The postures of all people at one moment.
+using Postures = std::vector<Posture>;
 
-/// The people as they are during one frame, for rays (geometry 1 + index): they move linearly
-/// between two shapes, time 0 and time 1 of a ray. Tracing is thread safe, posing is not.
+/// The people as they are during one picture, for rays (geometry 1 + index): still, with one shape,
+/// or moving linearly between two, time 0 and time 1 of a ray. Tracing is thread safe, posing is
+/// not.
 class PosedPeople {
  public:
   /// `world` gives the device, `people` the surfaces; both must outlive this.
-  PosedPeople(const RayCaster& world, const std::vector<Avatar>& people);
+  PosedPeople(const RayCaster& world, const std::vector<Avatar>& people, unsigned shapes);
   ~PosedPeople();
-  PosedPeople(const PosedPeople&) = delete;
-  PosedPeople& operator=(const PosedPeople&) = delete;
+  PosedPeople(PosedPeople&&) noexcept;
 
-  void pose(const std::vector<Movement>& movements);
+  /// Two shapes or more: those of the first and the last moment.
+  bool moves() const;
+  /// Postures for each shape.
+  void pose(const std::vector<Postures>& shapes);
 
   /// Hits that are nearer than those in the packet.
   void trace(RayPacket& packet) const;
-  /// Whether anybody is between the two points, apart from `margin_m` at both ends.
-  bool block(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m) const;
+  /// As RayCaster::blocks(), in the middle of the time.
+  std::array<bool, 16> block(const SightPacket& sight, float margin_m) const;
 
-  std::size_t size() const { return people_.size(); }
   const Avatar& avatar(std::size_t person) const { return people_[person]; }
-  /// Where each stands on the floor.
-  const std::vector<Eigen::Vector2f>& places() const { return places_; }
-  /// Vertices and their normals in the middle of the frame, world.
-  const std::vector<Eigen::Vector3f>& positions(std::size_t person) const {
-    return positions_[person];
-  }
-  const std::vector<Eigen::Vector3f>& normals(std::size_t person) const { return normals_[person]; }
 
  private:
   struct State;
 
   const std::vector<Avatar>& people_;
-  std::vector<Eigen::Vector2f> places_;
-  std::vector<std::vector<Eigen::Vector3f>> positions_, normals_;
   std::unique_ptr<State> state_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 
 #include "posefusion/simulator/world.hpp"
@@ -13,6 +14,12 @@ namespace posefusion::simulator {
 struct RayPacket {
   alignas(64) RTCRayHit16 rays;
   alignas(64) int valid[16];
+};
+
+/// Sixteen pairs of points, to be asked whether anything lies between.
+struct SightPacket {
+  std::array<Eigen::Vector3f, 16> from, to;
+  std::array<bool, 16> asked{};
 };
 
 /// Rays through the static world (geometry 0), with Embree. Thread safe.
@@ -27,8 +34,9 @@ class RayCaster {
   void trace(RayPacket& packet) const;
   void trace(RTCRayHit& ray) const;
 
-  /// Whether anything lies between the two points, apart from `margin_m` at both ends.
-  bool blocks(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float margin_m) const;
+  /// Whether anything lies between the points, apart from `margin_m` at both ends; false where not
+  /// asked.
+  std::array<bool, 16> blocks(const SightPacket& sight, float margin_m) const;
 
   /// For others that share the device: valid while this lives.
   RTCDevice device() const;

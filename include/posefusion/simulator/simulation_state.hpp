@@ -19,7 +19,8 @@ ViewSample viewAt(const Eigen::Isometry3d& T_world_camera, double time);
 struct Simulation::State {
   explicit State(const Scenario& s);
 
-  /// When a frame is taken (seconds of the scenario), and how long.
+  /// When a frame is taken (seconds of the scenario): the middle of the colour picture, the depth
+  /// picture, and from when to when the shutter is open.
   struct Moments {
     int index = -1;
     Exposure exposure;
@@ -35,10 +36,13 @@ struct Simulation::State {
 
   /// A frame about to be taken: its people posed and lit.
   struct Shot {
-    Shot(const RayCaster& world, const std::vector<Avatar>& avatars) : people(world, avatars) {}
+    Shot(const RayCaster& world, const std::vector<Avatar>& people, const ColorConfig& config)
+        : in_color(world, people, config.motion_blur || config.rolling_shutter_ms > 0.0 ? 2 : 1),
+          in_depth(world, people, 1) {}
 
     Moments moments;
-    PosedPeople people;
+    PosedPeople in_color, in_depth;
+    PeopleSurface surface;
     FrameLight light;
   };
   /// The shot of this frame: the one prepared in the background, or prepared now.
@@ -48,6 +52,7 @@ struct Simulation::State {
   void prepareInBackground(int index);
   void forgetPrepared();
   void prepare(Shot& shot, const Moments& m) const;
+  Postures posturesAt(double time) const;
 
   /// Colour, depth and truth of the shot.
   void draw(const Shot& shot, SimulatedFrame& out);
