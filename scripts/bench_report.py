@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What scripts/bench prints: rows of figures with their bars."""
+import os
+import pathlib
+import platform
+import subprocess
+
+
+class Failed(Exception):
+    """A program ended with an error; the message is what it said."""
+
+
+def call(*command, **named):
+    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, **named)
+    if done.returncode != 0:
+        said = (done.stderr.strip() or done.stdout.strip()).splitlines()
+        raise Failed(f"{pathlib.Path(command[0]).name}: {said[-1] if said else done.returncode}")
+    return done.stdout
+
+
+class Report:
+    def __init__(self):
+        self.rows = []
+
+    def row(self, what, value, unit, bar=None, most=True, digits=4):
+        """One figure. `bar`: it must be at most that (or at least, where `most` is false)."""
+        kept = None if bar is None else value <= bar if most else value >= bar
+        self.rows.append((what, f"{value:.{digits}f} {unit}".strip(),
+                          "" if bar is None else f"{'<=' if most else '>='} {bar:g}", kept))
+        self.print_row(self.rows[-1])
+
+    def fact(self, what, kept, text):
+        self.rows.append((what, text, "", kept))
+        self.print_row(self.rows[-1])
+
+    @staticmethod
+    def print_row(row):
+        mark = {True: "ok", False: "MISSED", None: ""}[row[3]]
+        print(f"{row[0]:<66} {row[1]:>16} {row[2]:>10}  {mark}", flush=True)
+
+
+def write_markdown(path, rows):
+    cores, machine = os.cpu_count(), platform.machine()
+    lines = [f"Printed by `scripts/bench` on {cores} cores ({machine}).", "",
+             "| what | measured | bar | |", "|---|---|---|---|"]
+    marks = {True: "ok", False: "missed", None: ""}
+    lines += [f"| {what} | {value} | {bar} | {marks[kept]} |" for what, value, bar, kept in rows]
+    path.write_text("\n".join(lines) + "\n")
