@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
 #include <nodelet/loader.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -11,9 +12,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "posefusion/io/files.hpp"
 #include "posefusion/synthetic/sequence.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
@@ -41,6 +44,18 @@ inline posefusion::SyntheticOptions smallSequence(int frames, bool figure) {
   options.width = 320;
   options.height = 240;
   return options;
+}
+
+inline int outcome(const TrackingStatusMsg& status) { return status.outcome; }
+
+/// What a trajectory.txt says besides comments.
+inline std::string posesIn(const std::string& file) {
+  std::istringstream lines(posefusion::readFile(file));
+  std::string line, poses;
+  while (std::getline(lines, line)) {
+    if (line.rfind('#', 0) != 0) poses += line + "\n";
+  }
+  return poses;
 }
 
 /// The four nodelets in this process, in a namespace of their own, and a camera that feeds them.
