@@ -2,6 +2,7 @@
 // Frames and settings that are no good.
 #include <gtest/gtest.h>
 
+#include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
 
 namespace posefusion_ros {
@@ -90,11 +91,16 @@ TEST(Chain, WithoutAModelItGoesOnWhereToldTo) {
 }
 
 TEST(Chain, ABadParameterLeavesTheNodeletIdle) {
-  Chain chain("bad_parameter");
-  ros::param::set(chain.space() + "/fusion/map/memory_limit_mb", std::string("much"));
-  nodelet::Loader loader(false);
-  EXPECT_TRUE(loader.load(chain.space() + "/fusion", "posefusion/fusion", {}, {}));
-  EXPECT_FALSE(ros::service::exists(chain.space() + "/fusion/save_map", false));
+  for (const char* name : {"map/memory_limit_mb", "surfels_period_s"}) {
+    const posefusion::TemporaryFolder folder;
+    Chain chain("bad_parameter");
+    ros::param::del(chain.space() + "/fusion");
+    ros::param::set(chain.space() + "/fusion/output", folder.str());
+    ros::param::set(chain.space() + "/fusion/" + name, std::string("much"));
+    ASSERT_TRUE(chain.load({"fusion"}));
+    EXPECT_FALSE(ros::service::exists(chain.space() + "/fusion/save_map", false)) << name;
+    chain.unload();
+  }
 }
 
 }  // namespace
