@@ -3,6 +3,8 @@
 // in a callback of the nodelet destroys it. chain.test has freed memory overwritten, so that a use
 // of it is seen.
 #include <gtest/gtest.h>
+#include <ros/service_manager.h>
+#include <ros/service_publication.h>
 
 #include <atomic>
 #include <thread>
@@ -52,6 +54,19 @@ TEST(ChainUnloading, FusionGoesWhileItsServicesAreCalled) {
     chain.unload("fusion");
     ASSERT_TRUE(chain.hasLostFusion());
   }
+}
+
+// roscpp's network thread holds a service while it reads a request.
+TEST(ChainUnloading, FusionGoesBeforeARequestHasArrived) {
+  Chain chain("request");
+  ASSERT_TRUE(chain.load({"fusion"}));
+  auto service =
+      ros::ServiceManager::instance()->lookupServicePublication(chain.space() + "/fusion/reset");
+  ASSERT_TRUE(service);
+  chain.unload("fusion");
+  ASSERT_TRUE(chain.hasLostFusion());
+  service->processRequest({}, 0, nullptr);
+  service.reset();
 }
 
 TEST(ChainUnloading, EachGoesWhileImagesFlow) {
