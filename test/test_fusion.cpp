@@ -6,18 +6,10 @@
 
 #include <algorithm>
 
+#include "small_camera.hpp"
+
 namespace posefusion {
 namespace {
-
-PinholeCamera camera() {
-  PinholeCamera c;
-  c.width = 160;
-  c.height = 120;
-  c.fx = c.fy = 130;
-  c.cx = 79.5;
-  c.cy = 59.5;
-  return c;
-}
 
 TrackingConfig fullResolution() {
   TrackingConfig config;
@@ -28,7 +20,7 @@ TrackingConfig fullResolution() {
 /// A wall at `wall_m`, and a board of `grey` before its middle where `board_m` > 0.
 WorkingFrame scene(double wall_m, double board_m = 0, double noise_m = 0, int seed = 0) {
   RgbdFrame frame;
-  frame.camera = camera();
+  frame.camera = smallCamera();
   frame.color = cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90));
   frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(wall_m));
   const cv::Rect board(60, 40, 40, 40);

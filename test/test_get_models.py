@@ -107,6 +107,15 @@ class Script(unittest.TestCase):
         for words in ("Apache-2.0", "non-commercial", "pose_iter_440000", "pose_iter_584000"):
             self.assertIn(words, listed.stdout)
 
+    def test_says_nothing_when_nobody_reads(self):
+        for arguments in ((), ("--help",)):
+            reader, writer = os.pipe()
+            os.close(reader)
+            with os.fdopen(writer) as closed:
+                done = subprocess.run([sys.executable, str(SCRIPT), *arguments], stdout=closed,
+                                      stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.stderr, "", arguments)
+
     def test_wrong_file_is_not_kept(self):
         wrong = self.path / "wrong.pb"
         wrong.write_bytes(SMALL_GRAPH)

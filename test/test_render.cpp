@@ -7,18 +7,10 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "small_camera.hpp"
+
 namespace posefusion {
 namespace {
-
-PinholeCamera camera() {
-  PinholeCamera c;
-  c.width = 160;
-  c.height = 120;
-  c.fx = c.fy = 130;
-  c.cx = 79.5;
-  c.cy = 59.5;
-  return c;
-}
 
 struct Disc {
   Eigen::Vector3f position, normal{0, 0, -1};
@@ -46,10 +38,10 @@ SurfelMap noisyWall(double sigma_m) {
   map.advance();
   std::mt19937 random(4);
   std::normal_distribution<float> noise(0.0F, static_cast<float>(sigma_m) + 1e-12F);
-  for (int v = 0; v < camera().height; ++v) {
-    for (int u = 0; u < camera().width; ++u) {
+  for (int v = 0; v < smallCamera().height; ++v) {
+    for (int u = 0; u < smallCamera().width; ++u) {
       const double z = 2.0 + noise(random);
-      add(map, {camera().unproject(u, v, z).cast<float>(), {0, 0, -1}, 1.1F * 2.0F / 130.0F});
+      add(map, {smallCamera().unproject(u, v, z).cast<float>(), {0, 0, -1}, 1.1F * 2.0F / 130.0F});
     }
   }
   return map;
@@ -58,13 +50,13 @@ SurfelMap noisyWall(double sigma_m) {
 ModelView render(const SurfelMap& map, const RenderOptions& options = {},
                  const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) {
   ModelView view;
-  SurfelRenderer().render(map, camera(), T, options, view);
+  SurfelRenderer().render(map, smallCamera(), T, options, view);
   return view;
 }
 
 TEST(SurfelRenderer, ShowsAWallWithoutHoles) {
   const ModelView view = render(noisyWall(0));
-  EXPECT_EQ(cv::countNonZero(view.depth_m), camera().width * camera().height);
+  EXPECT_EQ(cv::countNonZero(view.depth_m), smallCamera().width * smallCamera().height);
   EXPECT_NEAR(cv::mean(view.depth_m)[0], 2.0, 1e-5);
   EXPECT_NEAR(view.intensity.at<float>(60, 80), 100, 1e-3);
   EXPECT_NEAR(view.normal_z.at<float>(60, 80), -1, 1e-5);
@@ -81,7 +73,7 @@ TEST(SurfelRenderer, ShowsTheNearestSurface) {
   add(map, {{0, 0, 1.0F}, {0, 0, -1}, 0.05F, 100, 7});
   const ModelView view = render(map);
   EXPECT_NEAR(view.depth_m.at<float>(60, 80), 1.0, 1e-5);
-  EXPECT_EQ(view.index.at<int>(60, 80), camera().width * camera().height);
+  EXPECT_EQ(view.index.at<int>(60, 80), smallCamera().width * smallCamera().height);
   EXPECT_NEAR(view.depth_m.at<float>(20, 20), 2.0, 1e-5);
 }
 

@@ -50,6 +50,9 @@ class Parameters {
   template <typename Value>
   Value read(const std::string& name, const Value& fallback, const std::string& expected);
   [[noreturn]] void fail(const std::string& name, const std::string& what) const;
+  /// The value, noted; fails where it is out of range.
+  template <typename Value>
+  Value within(const std::string& name, const Value& value, const Range& range);
   template <typename Value>
   void note(const std::string& name, const Value& value);
 

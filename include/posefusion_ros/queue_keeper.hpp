@@ -5,16 +5,30 @@
 #include <ros/node_handle.h>
 
 #include <boost/smart_ptr/shared_ptr.hpp>
+#include <mutex>
 #include <vector>
 
 namespace posefusion_ros {
 
-/// Keeps the callback queues of a nodelet as long as the nodelet: to be its first member, filled
-/// first in onInit(). Unloading frees the queues, but a thread of the manager that is still in a
-/// callback keeps the nodelet until that returns: destroyed then, its services, timers and
-/// publishers remove themselves from queues that would be gone (nodelet 1.10).
+/// Keeps the callback queues of a nodelet: to be its first member, filled first in onInit().
+/// Unloading frees the queues too early (nodelet 1.10):
+/// - A thread of the manager that is still in a callback keeps the nodelet until that returns:
+///   destroyed then, its services, timers and publishers remove themselves from their queues.
+/// - The network thread may hold a service a moment longer, to put a request into the queue.
 class QueueKeeper {
  public:
+  QueueKeeper() = default;
+  /// Closes the queues, and keeps them for good: nobody tells when the network thread is through.
+  ~QueueKeeper() {
+    static std::mutex& mutex = *new std::mutex;  // not destroyed either
+    static auto& closed = *new Queues;
+    for (const auto& queue : queues_) queue->disable();
+    const std::lock_guard<std::mutex> lock(mutex);
+    closed.insert(closed.end(), queues_.begin(), queues_.end());
+  }
+  QueueKeeper(const QueueKeeper&) = delete;
+  QueueKeeper& operator=(const QueueKeeper&) = delete;
+
   /// `handle`: one of the nodelet's own. Another queue than a nodelet's is left to its owner.
   void keep(const ros::NodeHandle& handle) {
     using Queue = nodelet::detail::CallbackQueue;
@@ -24,7 +38,9 @@ class QueueKeeper {
   }
 
  private:
-  std::vector<boost::shared_ptr<nodelet::detail::CallbackQueue>> queues_;
+  using Queues = std::vector<boost::shared_ptr<nodelet::detail::CallbackQueue>>;
+
+  Queues queues_;
 };
 
 }  // namespace posefusion_ros

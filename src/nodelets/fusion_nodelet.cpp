@@ -33,7 +33,7 @@ class FusionNodelet : public ChainNodelet {
     save_service_.shutdown();
     reset_service_.shutdown();
     worker_.reset();
-    if (!saver_ || !saver_->isOn()) return;
+    if (!saver_ || !saver_->isOn()) return;  // start() may have failed anywhere
     const std::string said = saver_->tryToSave(mapper_->map(), trajectory_);
     // The log is closed already when the whole manager ends.
     std::printf("%s: %s\n", getName().c_str(), said.c_str());
@@ -51,11 +51,11 @@ class FusionNodelet : public ChainNodelet {
     map_frame_ = poses.map_frame;
     const bool lossless = parameters.flag("lossless", false);
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
+    mapper_ = std::make_unique<posefusion::Mapper>(config);
     saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
 
-    mapper_ = std::make_unique<posefusion::Mapper>(config);
     pose_output_ = std::make_unique<PoseOutput>(handle, poses);
     matcher_ =
         std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });

@@ -11,7 +11,7 @@ namespace posefusion::openni2 {
 /// temporary name until the recording ends.
 class Recording {
  public:
-  /// Throws InputError when the file cannot be made.
+  /// Returns once it records. Throws InputError when the file cannot be made.
   Recording(const std::string& path, openni::VideoStream& color, openni::VideoStream& depth);
   ~Recording();
 
@@ -20,6 +20,9 @@ class Recording {
   const std::string& path() const { return path_; }
 
  private:
+  void awaitStart() const;
+  void stopAndDestroy();
+
   std::string path_;
   std::string temporary_;
   openni::Recorder recorder_;

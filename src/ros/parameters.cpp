@@ -88,9 +88,9 @@ bool Parameters::flag(const std::string& name, bool fallback) {
   return value;
 }
 
-int Parameters::integer(const std::string& name, int fallback, const Range& range) {
-  const int value = read(name, fallback, "a whole number");
-  if (!(value >= range.min && value <= range.max)) {
+template <typename Value>
+Value Parameters::within(const std::string& name, const Value& value, const Range& range) {
+  if (!(value >= range.min && value <= range.max)) {  // not a number is out of range, too
     std::ostringstream what;
     what << "is " << value << ", expected " << range.min << " to " << range.max;
     fail(name, what.str());
@@ -99,15 +99,12 @@ int Parameters::integer(const std::string& name, int fallback, const Range& rang
   return value;
 }
 
+int Parameters::integer(const std::string& name, int fallback, const Range& range) {
+  return within(name, read(name, fallback, "a whole number"), range);
+}
+
 double Parameters::number(const std::string& name, double fallback, const Range& range) {
-  const double value = read(name, fallback, "a number");
-  if (!(value >= range.min && value <= range.max)) {
-    std::ostringstream what;
-    what << "is " << value << ", expected " << range.min << " to " << range.max;
-    fail(name, what.str());
-  }
-  note(name, value);
-  return value;
+  return within(name, read(name, fallback, "a number"), range);
 }
 
 std::string Parameters::text(const std::string& name, const std::string& fallback) {

@@ -34,8 +34,9 @@ inline void resetVirtualDevice(int number) {
                      &device.refuses_registration, &device.refuses_sync, &device.keeps_mirroring}) {
     *flag = false;
   }
-  for (auto* value : {&device.late_every, &device.late_by_ms, &device.duplicate_every,
-                      &device.short_every, &device.drop_every, &device.temperature_c100}) {
+  for (auto* value :
+       {&device.late_every, &device.late_by_ms, &device.duplicate_every, &device.short_every,
+        &device.drop_every, &device.temperature_c100, &device.notify_ms}) {
     *value = 0;
   }
   for (auto* asked :

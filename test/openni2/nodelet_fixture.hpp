@@ -6,10 +6,15 @@
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
+#include <std_srvs/SetBool.h>
 
 #include "device_fixture.hpp"
 
 namespace posefusion::openni2 {
+
+using diagnostic_msgs::DiagnosticStatus;
+using sensor_msgs::CameraInfo;
+using sensor_msgs::Image;
 
 /// Keeps what comes on a topic.
 template <typename Message>
@@ -46,7 +51,7 @@ class TopicKeeper {
 };
 
 /// Loads the driver into this process, as a manager does, with the virtual camera.
-class NodeletTest : public DeviceTest {
+class DriverNodelet : public DeviceTest {
  protected:
   void SetUp() override {
     DeviceTest::SetUp();
@@ -75,6 +80,18 @@ class NodeletTest : public DeviceTest {
     EXPECT_TRUE(eventually([] { return virtualDevice().opened == virtualDevice().closed; }));
   }
 
+  bool streams(std::size_t n) {
+    color_.clear();
+    depth_.clear();
+    return color_.waitFor(n) && depth_.waitFor(n);
+  }
+  std_srvs::SetBool::Response record(bool on) {
+    std_srvs::SetBool call;
+    call.request.data = on;
+    EXPECT_TRUE(ros::service::call(std::string(kName) + "/record", call));
+    return call.response;
+  }
+
   /// The last diagnostics say this, at this level, within ten seconds.
   testing::AssertionResult diagnosed(int level, const std::string& text) {
     std::string last = "nothing";
@@ -101,10 +118,14 @@ class NodeletTest : public DeviceTest {
   ros::NodeHandle nh_{"camera"};
   nodelet::Loader loader_{false};
   TopicKeeper<diagnostic_msgs::DiagnosticArray> diagnostics_{nh_, "/diagnostics"};
+  TopicKeeper<Image> color_{nh_, "rgb/image_raw"};
+  TopicKeeper<CameraInfo> color_info_{nh_, "rgb/camera_info"};
+  TopicKeeper<Image> depth_{nh_, "depth_registered/image_raw"};
+  TopicKeeper<CameraInfo> depth_info_{nh_, "depth_registered/camera_info"};
 };
 
 /// The index of the frame of the virtual camera that an image shows; -1 for none.
-inline int servedIndex(const sensor_msgs::Image& image, int to) {
+inline int servedIndex(const Image& image, int to) {
   const auto kind = image.encoding == "rgb8" ? StreamKind::color : StreamKind::depth;
   KeptFrame frame;
   frame.width = static_cast<int>(image.width);

@@ -1,36 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What the driver publishes, and what it does when asked.
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <sensor_msgs/SetCameraInfo.h>
-#include <std_srvs/SetBool.h>
 
 #include "nodelet_fixture.hpp"
 
 namespace posefusion::openni2 {
 namespace {
-
-using diagnostic_msgs::DiagnosticStatus;
-using sensor_msgs::CameraInfo;
-using sensor_msgs::Image;
-
-class DriverNodelet : public NodeletTest {
- protected:
-  TopicKeeper<Image> color_{nh_, "rgb/image_raw"};
-  TopicKeeper<CameraInfo> color_info_{nh_, "rgb/camera_info"};
-  TopicKeeper<Image> depth_{nh_, "depth_registered/image_raw"};
-  TopicKeeper<CameraInfo> depth_info_{nh_, "depth_registered/camera_info"};
-
-  bool streams(std::size_t n) {
-    color_.clear();
-    depth_.clear();
-    return color_.waitFor(n) && depth_.waitFor(n);
-  }
-  std_srvs::SetBool::Response record(bool on) {
-    std_srvs::SetBool call;
-    call.request.data = on;
-    EXPECT_TRUE(ros::service::call(std::string(kName) + "/record", call));
-    return call.response;
-  }
-};
 
 TEST_F(DriverNodelet, PublishesWhatWasServed) {
   load();
@@ -127,56 +103,6 @@ TEST_F(DriverNodelet, PublishesUnregisteredDepthUnderItsOwnNameAndFrame) {
   EXPECT_EQ(virtualDevice().registration, 0);
 }
 
-TEST_F(DriverNodelet, ComesBackAfterTheCameraWasUnplugged) {
-  load();
-  for (int round = 0; round < 2; ++round) {
-    ASSERT_TRUE(streams(3));
-    EXPECT_TRUE(diagnosed(DiagnosticStatus::OK, "streaming"));
-    EXPECT_EQ(diagnosticValue("serial number"), "V0001");
-    virtualDevice().plug(false);
-    EXPECT_TRUE(diagnosed(DiagnosticStatus::ERROR, "no camera is connected"));
-    virtualDevice().plug(true);
-  }
-  ASSERT_TRUE(streams(3));
-}
-
-TEST_F(DriverNodelet, WaitsForACameraThatIsNotThereYet) {
-  virtualDevice().plug(false);
-  load();
-  EXPECT_TRUE(diagnosed(DiagnosticStatus::ERROR, "looked for any camera"));
-  virtualDevice().plug(true);
-  EXPECT_TRUE(streams(3));
-}
-
-TEST_F(DriverNodelet, OpensASilentCameraAgain) {
-  set("stall_timeout_s", 0.5);
-  load();
-  ASSERT_TRUE(streams(3));
-  const int opened = virtualDevice().opened;
-  virtualDevice().stalled = true;
-  EXPECT_TRUE(eventually([&] { return virtualDevice().opened > opened; }));
-  virtualDevice().stalled = false;
-  EXPECT_TRUE(streams(3));
-}
-
-TEST_F(DriverNodelet, SaysWhichModesThereAre) {
-  set("color_mode", "800x600@30");
-  load();
-  EXPECT_TRUE(diagnosed(DiagnosticStatus::ERROR, "640x480@30 RGB"));
-}
-
-TEST_F(DriverNodelet, StaysIdleWithAnImpossibleParameterAndLeavesTheManagerAlive) {
-  set("color_mode", "VGA");
-  load();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_EQ(color_.size(), 0u);
-  EXPECT_TRUE(ros::ok());
-  unload();
-  set("color_mode", "640x480@30");
-  load();
-  EXPECT_TRUE(streams(2));
-}
-
 TEST_F(DriverNodelet, SetsTheExposureWhileItStreams) {
   load();
   ASSERT_TRUE(streams(2));
@@ -193,24 +119,6 @@ TEST_F(DriverNodelet, SetsTheExposureWhileItStreams) {
   EXPECT_TRUE(eventually([] { return virtualDevice().gain == 200; }));
   EXPECT_EQ(virtualDevice().auto_exposure, 0);
   EXPECT_EQ(virtualDevice().exposure, 9);
-}
-
-// The answer of a service may come before its callback has returned: who unloads then leaves the
-// last reference with the thread of the callback. Without the QueueKeeper this crashes now and
-// then.
-TEST_F(DriverNodelet, GoesWhileAServiceIsCalled) {
-  for (int i = 0; i < 10; ++i) {
-    load();
-    std::atomic<bool> ends{false};
-    std::thread caller([&] {
-      dynamic_reconfigure::Reconfigure call;
-      while (!ends) ros::service::call(std::string(kName) + "/set_parameters", call);
-    });
-    ASSERT_TRUE(streams(1));
-    unload();
-    ends = true;
-    caller.join();
-  }
 }
 
 TEST_F(DriverNodelet, HoldsTheExposureAtItsLimit) {
@@ -241,18 +149,6 @@ TEST_F(DriverNodelet, RecordsAFileAndPlaysIt) {
   EXPECT_TRUE(streams(5));
   EXPECT_TRUE(diagnosed(DiagnosticStatus::OK, "the file has been played"));
   for (const auto& image : color_.all()) EXPECT_GT(servedIndex(*image, 400), 0);
-}
-
-TEST_F(DriverNodelet, GoesWhileItStreamsAndWhileItRecords) {
-  for (int i = 0; i < 10; ++i) {
-    load();
-    if (i % 2 == 0) {
-      ASSERT_TRUE(streams(1));
-      EXPECT_TRUE(record(true).success);
-    }
-    unload();
-    EXPECT_EQ(virtualDevice().running_streams, 0);
-  }
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct VirtualDevice {
   std::atomic<bool> refuses_sync{false};
   std::atomic<bool> keeps_mirroring{false};
   std::atomic<bool> has_camera_settings{true};
+  std::atomic<int> notify_ms{0};            ///< time it takes to tell its properties to a recorder
   std::atomic<int> automatic_exposure{20};  ///< what its auto exposure chooses
   std::atomic<int> temperature_c100{0};     ///< hundredths of degrees; 0: tells none
 

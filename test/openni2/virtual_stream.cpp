@@ -147,6 +147,7 @@ OniBool VirtualStream::isPropertySupported(int id) {
 }
 
 void VirtualStream::notifyAllProperties() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(device_.notify_ms));
   // A recording needs all of these; one made without the cropping plays no frames.
   for (const int id :
        {ONI_STREAM_PROPERTY_VIDEO_MODE, ONI_STREAM_PROPERTY_HORIZONTAL_FOV,

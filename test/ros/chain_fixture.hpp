@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
 #include <nodelet/loader.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -11,9 +12,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "posefusion/io/files.hpp"
 #include "posefusion/synthetic/sequence.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
@@ -34,6 +37,15 @@ inline CameraMessages toMessages(const posefusion::RgbdFrame& frame) {
           boost::make_shared<sensor_msgs::CameraInfo>(toCameraInfo(frame.camera, header))};
 }
 
+/// Copies with another stamp.
+inline CameraMessages restamped(const CameraMessages& messages, std::int64_t stamp_ns) {
+  CameraMessages copy = {boost::make_shared<sensor_msgs::Image>(*messages.color),
+                         boost::make_shared<sensor_msgs::Image>(*messages.depth),
+                         boost::make_shared<sensor_msgs::CameraInfo>(*messages.info)};
+  copy.color->header.stamp = copy.depth->header.stamp = copy.info->header.stamp = toTime(stamp_ns);
+  return copy;
+}
+
 inline posefusion::SyntheticOptions smallSequence(int frames, bool figure) {
   posefusion::SyntheticOptions options;
   options.frames = frames;
@@ -43,13 +55,31 @@ inline posefusion::SyntheticOptions smallSequence(int frames, bool figure) {
   return options;
 }
 
+inline int outcome(const TrackingStatusMsg& status) { return status.outcome; }
+
+/// What a trajectory.txt says besides comments.
+inline std::string posesIn(const std::string& file) {
+  std::istringstream lines(posefusion::readFile(file));
+  std::string line, poses;
+  while (std::getline(lines, line)) {
+    if (line.rfind('#', 0) != 0) poses += line + "\n";
+  }
+  return poses;
+}
+
 /// The four nodelets in this process, in a namespace of their own, and a camera that feeds them.
 class Chain {
  public:
+  static const std::vector<std::string>& nodelets() {
+    static const std::vector<std::string> names = {"blur_gate", "pose_detector", "segmenter",
+                                                   "fusion"};
+    return names;
+  }
+
   /// Sets a private parameter of all four; before load().
   template <typename Value>
   void set(const std::string& name, const Value& value) {
-    for (const auto& nodelet : kNodelets)
+    for (const auto& nodelet : nodelets())
       ros::param::set(space_ + "/" + nodelet + "/" + name, value);
   }
 
@@ -64,14 +94,24 @@ class Chain {
 
   /// Loads the chain; true once it reports.
   bool load() {
-    loader_ = std::make_unique<nodelet::Loader>(false);
-    for (const auto& nodelet : kNodelets) {
+    return load(nodelets()) && waitUntil([this] {
+             return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0;
+           });
+  }
+  bool load(const std::vector<std::string>& names) {
+    for (const auto& nodelet : names) {
       if (!loader_->load(space_ + "/" + nodelet, "posefusion/" + nodelet, {}, {})) return false;
     }
-    return waitUntil(
-        [this] { return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0; });
+    return true;
   }
-  void unload() { loader_.reset(); }
+  /// Returns when they are gone.
+  void unload() { loader_ = std::make_unique<nodelet::Loader>(false); }
+  /// Returns before it is gone where a thread is in one of its callbacks.
+  void unload(const std::string& nodelet) { loader_->unload(space_ + "/" + nodelet); }
+  /// Waits until the services of fusion are gone.
+  bool hasLostFusion() const {
+    return waitUntil([this] { return !ros::service::exists(space_ + "/fusion/reset", false); });
+  }
 
   void send(const CameraMessages& m) {
     if (m.info) info_.publish(sensor_msgs::CameraInfoConstPtr(m.info));
@@ -121,14 +161,13 @@ class Chain {
     statuses_.push_back(*status);
   }
 
-  const std::vector<std::string> kNodelets = {"blur_gate", "pose_detector", "segmenter", "fusion"};
   std::string space_;
   ros::NodeHandle handle_;
   mutable std::mutex mutex_;
   std::vector<TrackingStatusMsg> statuses_;
   ros::Publisher color_, depth_, info_;
   ros::Subscriber status_;
-  std::unique_ptr<nodelet::Loader> loader_;
+  std::unique_ptr<nodelet::Loader> loader_ = std::make_unique<nodelet::Loader>(false);
 };
 
 }  // namespace posefusion_ros

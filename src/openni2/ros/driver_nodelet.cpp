@@ -13,12 +13,7 @@ namespace posefusion::openni2 {
 /// posefusion/openni2_driver: parameters, services and dynamic_reconfigure of the driver.
 class DriverNodelet : public nodelet::Nodelet {
  public:
-  ~DriverNodelet() override {
-    // No request may come any more when the driver goes.
-    record_.shutdown();
-    reconfigure_.reset();
-    driver_.reset();
-  }
+  ~DriverNodelet() override { close(); }
 
  private:
   void onInit() override {
@@ -34,8 +29,15 @@ class DriverNodelet : public nodelet::Nodelet {
       driver_->start();
     } catch (const std::exception& error) {
       NODELET_FATAL("The OpenNI2 driver stays idle: %s", error.what());
-      driver_.reset();
+      close();
     }
+  }
+
+  void close() {
+    // No request may come any more when the driver goes.
+    record_.shutdown();
+    reconfigure_.reset();
+    driver_.reset();
   }
 
   void apply(const OpenNi2DriverConfig& config) {
