@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kBodyCellM = 0.013F;
-constexpr float kHeadCellM = 0.0055F;
+constexpr float kBodyCellM = 0.0145F;
+constexpr float kHeadCellM = 0.0065F;
 constexpr float kHandCellM = 0.0065F;
 constexpr float kBlendM = 0.022F;
 

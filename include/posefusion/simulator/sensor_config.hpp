@@ -8,7 +8,7 @@ namespace posefusion::simulator {
 /// The colour camera.
 struct ColorConfig {
   bool motion_blur = true;
-  int samples = 3;       ///< rays a pixel when nothing moves
+  int samples = 2;       ///< rays a pixel when nothing moves
   int max_samples = 12;  ///< when the picture moves fast
   bool auto_exposure = true;
   double exposure_ms = 16.0;      ///< the first, or the only one
