@@ -42,7 +42,7 @@ class RowLuck {
         w[0] * above_[ix] + w[1] * above_[ix + 1] + w[2] * below_[ix] + w[3] * below_[ix + 1];
     const float norm = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3]);
     const float own = gaussian(
-        hash(key_, 0x51U, static_cast<std::uint32_t>(col), static_cast<std::uint32_t>(row_)));
+        hash(key_, 0x51U, static_cast<std::uint32_t>(row_), static_cast<std::uint32_t>(col)));
     return 0.8F * sum / norm + 0.6F * own;
   }
 
@@ -65,7 +65,8 @@ float angleOf(float cosine) {
 /// Chance that the pattern is not found: too dark, seen too flat, or mirrored away.
 float dropoutChance(float z, float cosine, float theta, float infrared, float gloss) {
   const float signal = infrared * std::sqrt(cosine) / (0.25F + 0.11F * z * z);
-  float lost = 1.0F / (1.0F + std::exp((signal - 0.055F) / 0.011F));
+  const float margin = (signal - 0.055F) / 0.011F;
+  float lost = margin < 15.0F ? 1.0F / (1.0F + std::exp(margin)) : 0.0F;
   lost = std::max(lost, std::clamp((theta - 1.36F) / 0.12F, 0.0F, 1.0F));
   if (gloss > 0.2F) {
     // Seen head on the reflection blinds, seen flat nothing comes back.
@@ -170,8 +171,8 @@ double reported(const Sensing& f, const Source& s, int col, int row, const RowLu
   const float cosine = f.view.cosine.at<float>(s.row, s.col);
   const float theta = angleOf(cosine);
   // Dropouts come as specks of a few pixels rather than single ones.
-  const std::uint32_t speck = hash(f.key, 0x77U, static_cast<std::uint32_t>(col) / 3U,
-                                   static_cast<std::uint32_t>(row) / 3U);
+  const std::uint32_t speck = hash(f.key, 0x77U, static_cast<std::uint32_t>(row) / 3U,
+                                   static_cast<std::uint32_t>(col) / 3U);
   const std::uint32_t own = hash(speck, static_cast<std::uint32_t>(col % 3 * 3 + row % 3));
   const float luck = 0.6F * uniform(speck) + 0.4F * uniform(own);
   const float lost =
