@@ -98,7 +98,7 @@ TEST(SimulatorTruth, VisibleJointsLieInTheMaskOfTheirPersonAndBehindItsSkin) {
 TEST(SimulatorTruth, PosesOfTheTrajectoryAreThoseOfTheFrames) {
   Simulation simulation(smallScenario());
   const SimulatedFrame frame = simulation.frame(5);
-  const Trajectory truth = simulation.truth();
+  const Trajectory truth = simulation.truth(simulation.frameCount());
   EXPECT_NEAR(static_cast<double>(truth.size()), 1.05 * 200.0, 2.0);
   double nearest = 1e9, distance = 1e9;
   for (const auto& pose : truth) {
@@ -197,7 +197,7 @@ TEST(SimulatorTruth, TumFolderIsReadBack) {
   const auto source = openTumFolder(folder / "out");
   EXPECT_EQ(source->frameCount(), static_cast<std::size_t>(kept));
   EXPECT_EQ(source->people().size(), static_cast<std::size_t>(kept));
-  EXPECT_EQ(source->truth().size(), simulation.truth().size());
+  EXPECT_EQ(source->truth().size(), simulation.truth(10).size());
   const auto first = source->next();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->defect, "");

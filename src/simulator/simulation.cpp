@@ -14,6 +14,7 @@ namespace posefusion::simulator {
 namespace {
 
 constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
+constexpr double kAfterS = 0.05;  // of truth after the last frame: its depth is taken later
 
 /// Everybody's goals must be somewhere a person can stand.
 void checkPeople(const Scenario& s, const World& world) {
@@ -83,11 +84,12 @@ SimulatedFrame Simulation::frame(int index) {
 
 void Simulation::jump() { state_->exposure.restart(); }
 
-Trajectory Simulation::truth() const {
+Trajectory Simulation::truth(int frames) const {
   const State& s = *state_;
   const TruthConfig& c = s.scenario.truth;
   Trajectory trajectory;
-  const int count = static_cast<int>(std::floor((s.scenario.duration_s + 0.05) * c.rate_hz)) + 1;
+  const int count =
+      static_cast<int>(std::floor((frames / s.scenario.fps + kAfterS) * c.rate_hz)) + 1;
   for (int i = 0; i < count; ++i) {
     const double t = s.scenario.start_s + i / c.rate_hz;
     if (c.gap_every_s > 0.0) {
@@ -107,11 +109,13 @@ Trajectory Simulation::truth() const {
   return trajectory;
 }
 
-std::vector<Event> Simulation::events() const {
-  const double from = state_->scenario.start_s, to = from + state_->scenario.duration_s;
+std::vector<Event> Simulation::events(int frames) const {
+  const double from = state_->scenario.start_s;
+  const double to = from + frames / state_->scenario.fps + kAfterS;
   std::vector<Event> events;
   for (const Event& e : state_->path->events()) {
-    if (e.end_s > from && e.start_s < to) events.push_back(e);
+    if (e.end_s <= from || e.start_s >= to) continue;
+    events.push_back({e.kind, std::max(e.start_s, from), std::min(e.end_s, to)});
   }
   return events;
 }
