@@ -79,6 +79,24 @@ TEST(SimulatorMotion, WaysLeadRoundFurniture) {
   }
 }
 
+TEST(SimulatorMotion, WhoSitsAtATableComesAndGoesBySideways) {
+  World world = emptyRoom(6, 6);
+  world.footprints.push_back({{3, 3}, {0.4, 1.0}, 0.0});    // a table
+  world.footprints.push_back({{2.2, 3}, {0.3, 0.3}, 0.0});  // and its chair
+  const Walkway walkway(world, 0.3);
+  const Vector2d between(2.55, 3.1), door(0.8, 3.7);
+  const double reach = (walkway.nearestFree(between) - between).norm() + 0.1;
+  for (const auto& way : {walkway.findWay(between, door), walkway.findWay(door, between)}) {
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+      for (double s = 0.0; s <= 1.0; s += 0.02) {
+        const Vector2d p = way[i] + s * (way[i + 1] - way[i]);
+        EXPECT_TRUE((p - between).norm() < reach || Walkway(world, 0.22).isFree(p))
+            << p.transpose();
+      }
+    }
+  }
+}
+
 TEST(SimulatorMotion, LimbsKeepTheirLengthsAndReachWhatIsInReach) {
   const Vector3f root(0, 0, 1);
   for (const Vector3f& target : {Vector3f(0.2F, 0.1F, 0.7F), Vector3f(0.0F, 0.3F, 0.8F),

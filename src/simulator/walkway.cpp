@@ -119,6 +119,7 @@ std::vector<int> Walkway::search(int from, int to) const {
 std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to) const {
   const Vector2d start = nearestFree(from), goal = nearestFree(to);
   std::vector<Vector2d> way{from};
+  if (!isFree(from)) way.push_back(start);
   if (!seesFree(start, goal) && cellAt(start) >= 0 && cellAt(goal) >= 0) {
     const std::vector<int> cells = search(cellAt(start), cellAt(goal));
     Vector2d corner = start;
@@ -128,6 +129,7 @@ std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to)
       way.push_back(corner);
     }
   }
+  if (!isFree(to)) way.push_back(goal);
   way.push_back(to);
   return way;
 }
