@@ -64,6 +64,16 @@ TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
   EXPECT_TRUE(contains(loadError(kRoom + "people: [{script: [{do: fly}]}]"),
                        "people[0]: script[0]: do is 'fly'"));
   EXPECT_TRUE(contains(loadError("base: scene.yaml\n" + kRoom), "leads back"));
+  EXPECT_TRUE(contains(loadError("base: [a]\n" + kRoom), "scene.yaml: base is not"));
+  EXPECT_TRUE(contains(loadError(kRoom + "fps: 9\nfps: 8"), "scene.yaml: fps is given twice"));
+  EXPECT_TRUE(contains(loadError(kRoom + "seed: 1.5"), "seed is 1.5, expected a whole number"));
+  EXPECT_TRUE(contains(loadError(kRoom + "duration_s: 0"), "duration_s is 0, expected 0.05 to"));
+  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 6}"), "depth: min_m"));
+  EXPECT_TRUE(contains(loadError("rooms: [{walls: fur}]"), "rooms[0]: walls is 'fur'"));
+  const std::string robot = "camera: {motion: robot, waypoints: [[1, 1], [3, 1]], ";
+  EXPECT_TRUE(contains(loadError(kRoom + robot + "falls: [{at_s: 9}, {at_s: 3}]}"),
+                       "falls[1]: at_s is not after"));
+  EXPECT_TRUE(contains(loadError(kRoom + robot + "turn_deg_s: 0}"), "turn_deg_s"));
 }
 
 TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
@@ -81,6 +91,16 @@ TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
                              "people: [{start_m: [2, 2], script: [{do: walk, to: [9, 2]}]}]"),
                        "people[0]: script[0]"));
+  const std::string table =
+      "camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
+      "objects: [{kind: table, at_m: [2.5, 2.5]}]\n";
+  EXPECT_TRUE(contains(build(table + "people: [{start_m: [2.5, 2.6]}]"),
+                       "scene.yaml: people[0]: start_m is (2.50, 2.60), inside"));
+  EXPECT_TRUE(
+      contains(build(table + "people: [{start_m: [1, 3], script: [{do: walk, to: [2.5, 2.5]}]}]"),
+               "people[0]: script[0]: to is (2.50, 2.50), inside"));
+  EXPECT_TRUE(contains(build("objects: [{kind: table, at_m: [9, 1]}]"),
+                       "scene.yaml: objects[0]: at_m is (9.00, 1.00), outside"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, texture: fur, at_m: [1, 1]}]"), "fur"));
 }
 

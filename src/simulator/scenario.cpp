@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/simulator/scenario_parts.hpp"
@@ -13,6 +14,20 @@ namespace posefusion::simulator {
 namespace {
 
 constexpr int kDeepestBase = 8;
+
+/// A key that is given twice would be lost without a word.
+void refuseTwins(const YAML::Node& node, const std::string& where) {
+  std::set<std::string> keys;
+  for (const auto& entry : node) {
+    if (node.IsSequence()) {
+      refuseTwins(entry, where);
+      continue;
+    }
+    const auto key = entry.first.as<std::string>("");
+    if (!keys.insert(key).second) throw InputError(where + ": " + key + " is given twice");
+    refuseTwins(entry.second, where);
+  }
+}
 
 YAML::Node parse(const std::string& text, const std::string& where) {
   try {
@@ -57,8 +72,10 @@ YAML::Node loadTree(const std::string& name, const std::string& beside, int dept
   }
   YAML::Node tree = parse(text, path);
   if (!tree.IsMap()) throw InputError(path + ": expected keys with values");
+  refuseTwins(tree, path);
   const YAML::Node base = tree["base"];
   if (!base) return tree;
+  if (!base.IsScalar()) throw InputError(path + ": base is not a name or file of a scene");
   const std::string folder = path.substr(0, path.find_last_of('/') + 1);
   YAML::Node whole = merged(loadTree(base.as<std::string>(), folder, depth + 1), tree);
   whole.remove("base");
@@ -137,6 +154,7 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   YamlMap color = map.map("color"), depth = map.map("depth");
   visitFields(s.color, color);
   visitFields(s.depth, depth);
+  if (s.depth.min_m >= s.depth.max_m) depth.fail("min_m", "is not less than max_m");
   color.finish();
   depth.finish();
   readTruth(map.map("truth"), s.truth);

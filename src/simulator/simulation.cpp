@@ -8,6 +8,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/simulator/camera_check.hpp"
 #include "posefusion/simulator/random.hpp"
+#include "posefusion/simulator/scene_check.hpp"
 #include "posefusion/simulator/simulation_state.hpp"
 
 namespace posefusion::simulator {
@@ -16,31 +17,13 @@ namespace {
 constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
 constexpr double kAfterS = 0.05;  // of truth after the last frame: its depth is taken later
 
-/// Everybody's goals must be somewhere a person can stand.
-void checkPeople(const Scenario& s, const World& world) {
-  const auto inside = [&](const Eigen::Vector2d& p) {
-    return std::any_of(world.rooms.begin(), world.rooms.end(), [&](const auto& room) {
-      return room.contains(Eigen::Vector3d(p.x(), p.y(), 0.5));
-    });
-  };
-  for (std::size_t i = 0; i < s.people.size(); ++i) {
-    const std::string who = "people[" + std::to_string(i) + "]";
-    if (!inside(s.people[i].start_m)) throw InputError(who + ": start_m is outside of all rooms");
-    for (std::size_t k = 0; k < s.people[i].script.size(); ++k) {
-      const Action& a = s.people[i].script[k];
-      const bool goes = a.kind == Action::Kind::walk || a.kind == Action::Kind::sit;
-      if (goes && !inside(a.at_m.head<2>())) {
-        throw InputError(who + ": script[" + std::to_string(k) + "] leads outside of all rooms");
-      }
-    }
-  }
-}
-
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario) : state_(std::make_unique<State>(scenario)) {
-  checkPeople(scenario, state_->world);
+Simulation::Simulation(const Scenario& scenario) try : state_(std::make_unique<State>(scenario)) {
+  checkScene(scenario, state_->world);
   checkCamera(*state_->path, state_->world, state_->caster, scenario.start_s + scenario.duration_s);
+} catch (const InputError& error) {
+  throw InputError(scenario.name + ": " + error.what());
 }
 
 Simulation::~Simulation() = default;
