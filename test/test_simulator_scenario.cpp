@@ -2,6 +2,8 @@
 // Scene files: the package's own are good, bad ones are refused with the place of the mistake.
 #include <gtest/gtest.h>
 
+#include "posefusion/simulator/furniture.hpp"
+#include "posefusion/simulator/scene_check.hpp"
 #include "simulator_scene.hpp"
 
 namespace posefusion::simulator {
@@ -17,13 +19,17 @@ bool contains(const std::string& text, const std::string& part) {
 
 const std::string kRoom = "rooms: [{size_m: [4, 4, 2.5]}]\n";
 
-TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
+TEST(SimulatorScenario, AllScenariosOfThePackageLoadAndTheirPeopleFindRoom) {
   for (const char* name : {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere",
                            "sitting_static", "sitting_xyz", "sitting_halfsphere", "loop_room",
                            "hrpslam1", "hrpslam2", "fall_short", "empty_room", "crowd"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;
+    World world;
+    for (const auto& room : s.rooms) addRoom(world, room, 1U);
+    for (const auto& object : s.objects) addObject(world, object);
+    EXPECT_EQ(errorOf([&] { checkScene(s, world); }), "") << name;
   }
   EXPECT_EQ(loadScenario("walking_xyz").hand_held->pattern, "xyz");
   EXPECT_EQ(loadScenario("walking_xyz").people.size(), 2U);
