@@ -79,6 +79,23 @@ TEST(SimulatorMotion, WaysLeadRoundFurniture) {
   }
 }
 
+TEST(SimulatorMotion, WaysLeadThroughDoorwaysNotThroughWalls) {
+  World world = emptyRoom(4, 4);
+  world.rooms.emplace_back(Eigen::Vector3d(4.12, 0, 0), Eigen::Vector3d(8, 4, 2.5));
+  const Vector2d from(1, 3), to(7, 3);
+  EXPECT_FALSE(Walkway(world, 0.3).connects(from, to));
+  world.passages.push_back({{4.06, 1.0}, {0.22, 0.5}, M_PI / 2});
+  const Walkway walkway(world, 0.3);
+  EXPECT_TRUE(walkway.connects(from, to));
+  const auto way = walkway.findWay(from, to);
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    for (double s = 0.0; s <= 1.0; s += 0.02) {
+      const Vector2d p = way[i] + s * (way[i + 1] - way[i]);
+      EXPECT_TRUE(walkway.isFree(p)) << p.transpose();
+    }
+  }
+}
+
 TEST(SimulatorMotion, WhoSitsAtATableComesAndGoesBySideways) {
   World world = emptyRoom(6, 6);
   world.footprints.push_back({{3, 3}, {0.4, 1.0}, 0.0});    // a table

@@ -84,7 +84,8 @@ TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
 
 TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   const auto build = [](const std::string& rest) {
-    return errorOf([&] { Simulation simulation(load(kRoom + "duration_s: 0.2\n" + rest)); });
+    const std::string rooms = contains(rest, "rooms:") ? "" : kRoom;
+    return errorOf([&] { Simulation simulation(load(rooms + "duration_s: 0.2\n" + rest)); });
   };
   EXPECT_EQ(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}"), "");
   EXPECT_TRUE(contains(build("camera: {at_m: [-1, 1, 1.2], look_at_m: [3, 3, 1]}"), "outside"));
@@ -105,6 +106,10 @@ TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   EXPECT_TRUE(
       contains(build(table + "people: [{start_m: [1, 3], script: [{do: walk, to: [2.5, 2.5]}]}]"),
                "people[0]: script[0]: to is (2.50, 2.50), inside"));
+  EXPECT_TRUE(contains(build("people: [{start_m: [1, 3], script: [{do: walk, to: [6, 3]}]}]\n"
+                             "rooms: [{size_m: [4, 4, 2.5]}, "
+                             "{origin_m: [4.2, 0], size_m: [4, 4, 2.5]}]\n"),
+                       "people[0]: script[0]: to is (6.00, 3.00), no way leads there"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, at_m: [9, 1]}]"),
                        "scene.yaml: objects[0]: at_m is (9.00, 1.00), outside"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, texture: fur, at_m: [1, 1]}]"), "fur"));

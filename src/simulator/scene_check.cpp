@@ -53,18 +53,22 @@ void checkScene(const Scenario& scenario, const World& world) {
     if (isInside(world, at, kWallM)) continue;
     throw InputError(entryOf("objects", i) + ": at_m" + textOf(at) + "outside of all rooms");
   }
-  const Walkway walkway(world, kStandingM);
+  const Walkway standing(world, kStandingM), walking(world, kWalkClearanceM);
   for (std::size_t i = 0; i < scenario.people.size(); ++i) {
     const PersonSpec& person = scenario.people[i];
     const std::string who = entryOf("people", i) + ": ";
     const bool seated = !person.script.empty() && person.script.front().kind == Action::Kind::sit;
-    if (!seated) expectStandable(who + "start_m", world, walkway, person.start_m);
+    if (!seated) expectStandable(who + "start_m", world, standing, person.start_m);
     for (std::size_t k = 0; k < person.script.size(); ++k) {
       const Action& a = person.script[k];
       const std::string key = who + entryOf("script", k) + ": ";
       const Vector2d at = a.at_m.head<2>();
-      if (a.kind == Action::Kind::walk) expectStandable(key + "to", world, walkway, at);
+      if (a.kind == Action::Kind::walk) expectStandable(key + "to", world, standing, at);
       if (a.kind == Action::Kind::sit) expectInside(key + "on", world, at);
+      if (a.kind != Action::Kind::walk && a.kind != Action::Kind::sit) continue;
+      if (walking.connects(person.start_m, at)) continue;
+      throw InputError(key + (a.kind == Action::Kind::sit ? "on" : "to") + textOf(at) +
+                       "no way leads there");
     }
   }
 }

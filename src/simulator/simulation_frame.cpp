@@ -14,7 +14,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3f;
 
-constexpr double kWalkClearanceM = 0.30;
 constexpr double kShadowReachM = 9.0;
 
 World buildWorld(const Scenario& s) {

@@ -18,7 +18,7 @@ bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
   const Vector2d d = p - f.centre;
   const Vector2d local(c * d.x() + s * d.y(), -s * d.x() + c * d.y());
   const Vector2d beyond = (local.cwiseAbs() - f.half_size).cwiseMax(0.0);
-  return beyond.norm() < margin_m;
+  return beyond.norm() <= margin_m;
 }
 
 }  // namespace
@@ -114,6 +114,12 @@ std::vector<int> Walkway::search(int from, int to) const {
     cells.push_back(cell);
   std::reverse(cells.begin(), cells.end());
   return cells;
+}
+
+bool Walkway::connects(const Vector2d& from, const Vector2d& to) const {
+  const Vector2d start = nearestFree(from), goal = nearestFree(to);
+  if (cellAt(start) < 0 || cellAt(goal) < 0) return false;
+  return seesFree(start, goal) || !search(cellAt(start), cellAt(goal)).empty();
 }
 
 std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to) const {
