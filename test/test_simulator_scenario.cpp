@@ -19,17 +19,13 @@ bool contains(const std::string& text, const std::string& part) {
 
 const std::string kRoom = "rooms: [{size_m: [4, 4, 2.5]}]\n";
 
-TEST(SimulatorScenario, AllScenariosOfThePackageLoadAndTheirPeopleFindRoom) {
+TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
   for (const char* name : {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere",
                            "sitting_static", "sitting_xyz", "sitting_halfsphere", "loop_room",
                            "hrpslam1", "hrpslam2", "fall_short", "empty_room", "crowd"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;
-    World world;
-    for (const auto& room : s.rooms) addRoom(world, room, 1U);
-    for (const auto& object : s.objects) addObject(world, object);
-    EXPECT_EQ(errorOf([&] { checkScene(s, world); }), "") << name;
   }
   EXPECT_EQ(loadScenario("walking_xyz").hand_held->pattern, "xyz");
   EXPECT_EQ(loadScenario("walking_xyz").people.size(), 2U);
@@ -39,6 +35,17 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoadAndTheirPeopleFindRoom) {
   EXPECT_EQ(loadScenario("hrpslam2").robot->falls.size(), 5U);
   EXPECT_EQ(loadScenario("hrpslam1").duration_s, 840.0);
   EXPECT_EQ(loadScenario("hrpslam2").duration_s, 780.0);
+}
+
+TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
+  // The others have the people and the rooms of one of these.
+  for (const char* name : {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd"}) {
+    const Scenario s = loadScenario(name);
+    World world;
+    for (const auto& room : s.rooms) addRoom(world, room, 1U);
+    for (const auto& object : s.objects) addObject(world, object);
+    EXPECT_EQ(errorOf([&] { checkScene(s, world); }), "") << name;
+  }
 }
 
 TEST(SimulatorScenario, EveryValueCanBeChanged) {
