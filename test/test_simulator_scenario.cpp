@@ -59,6 +59,13 @@ TEST(SimulatorScenario, EveryValueCanBeChanged) {
   EXPECT_EQ(s.duration_s, 2.5);
   changes.assignments = {"people.7.height_m=1.9"};
   EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }), "'7' is no entry"));
+  changes.assignments = {"duration_s.x=1"};
+  EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }),
+                       "--set duration_s.x=1: 'x' is within a single value"));
+  changes.assignments = {};
+  changes.start_s = 99999.0;
+  EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }),
+                       "walking_xyz: start_s is 99999, expected 0 to 36000"));
 }
 
 TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {

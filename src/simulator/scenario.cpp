@@ -101,6 +101,8 @@ void assign(YAML::Node tree, const std::string& assignment) {
         throw InputError("--set " + assignment + ": '" + key + "' is no entry of the list");
       }
       next.reset(node[std::stoul(key)]);
+    } else if (node.IsScalar()) {
+      throw InputError("--set " + assignment + ": '" + key + "' is within a single value");
     } else {
       next.reset(node[key]);
     }
@@ -127,6 +129,8 @@ void readTruth(YamlMap map, TruthConfig& truth) {
 Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& changes) {
   YAML::Node tree = loadTree(name_or_file, "", 0);
   for (const auto& assignment : changes.assignments) assign(tree, assignment);
+  if (changes.duration_s) tree["duration_s"] = *changes.duration_s;
+  if (changes.start_s) tree["start_s"] = *changes.start_s;
   YamlMap map(tree, name_or_file);
   Scenario s;
   s.name = map.text("name", name_or_file);
@@ -135,8 +139,6 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   s.duration_s = map.number("duration_s", s.duration_s, 0.05, 36000.0);
   s.start_s = map.number("start_s", s.start_s, 0.0, 36000.0);
   if (changes.seed) s.seed = *changes.seed;
-  if (changes.duration_s) s.duration_s = *changes.duration_s;
-  if (changes.start_s) s.start_s = *changes.start_s;
   s.fps = map.number("fps", s.fps, 0.5, 240.0);
   s.dropped = map.number("dropped", s.dropped, 0.0, 0.9);
   for (auto& room : map.maps("rooms")) s.rooms.push_back(readRoom(room));
