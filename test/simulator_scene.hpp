@@ -20,7 +20,7 @@ objects:
   - {kind: poster, at_m: [5.0, 2.0, 1.0], yaw_deg: 180}
   - {kind: shelf, at_m: [4.8, 0.8], yaw_deg: 180}
 people:
-  - {name: walker, look: 3, start_m: [2.6, 1.2], yaw_deg: 90, script: [{do: walk, to: [2.7, 2.6]}]}
+  - {name: walker, look: 3, start_m: [2.6, 1.2], yaw_deg: 90, script: [{do: walk, to: [2.45, 2.6]}]}
   - {name: sitter, look: 4, start_m: [3.5, 1.0], script: [{do: sit, on: [3.6, 1.2], yaw_deg: 170, talks: true, for_s: 60}]}
 camera: {motion: xyz, at_m: [0.7, 1.9, 1.3], look_at_m: [3.5, 1.9, 0.9], width: 160}
 depth: {offset_ms: 0, jitter_ms: 0}

@@ -79,6 +79,41 @@ TEST(SimulatorMotion, WaysLeadRoundFurniture) {
   }
 }
 
+TEST(SimulatorMotion, WaysLeadThroughDoorwaysNotThroughWalls) {
+  World world = emptyRoom(4, 4);
+  world.rooms.emplace_back(Eigen::Vector3d(4.12, 0, 0), Eigen::Vector3d(8, 4, 2.5));
+  const Vector2d from(1, 3), to(7, 3);
+  EXPECT_FALSE(Walkway(world, 0.3).connects(from, to));
+  world.passages.push_back({{4.06, 1.0}, {0.22, 0.5}, M_PI / 2});
+  const Walkway walkway(world, 0.3);
+  EXPECT_TRUE(walkway.connects(from, to));
+  const auto way = walkway.findWay(from, to);
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    for (double s = 0.0; s <= 1.0; s += 0.02) {
+      const Vector2d p = way[i] + s * (way[i + 1] - way[i]);
+      EXPECT_TRUE(walkway.isFree(p)) << p.transpose();
+    }
+  }
+}
+
+TEST(SimulatorMotion, WhoSitsAtATableComesAndGoesBySideways) {
+  World world = emptyRoom(6, 6);
+  world.footprints.push_back({{3, 3}, {0.4, 1.0}, 0.0});    // a table
+  world.footprints.push_back({{2.2, 3}, {0.3, 0.3}, 0.0});  // and its chair
+  const Walkway walkway(world, 0.3);
+  const Vector2d between(2.55, 3.1), door(0.8, 3.7);
+  const double reach = (walkway.nearestFree(between) - between).norm() + 0.1;
+  for (const auto& way : {walkway.findWay(between, door), walkway.findWay(door, between)}) {
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+      for (double s = 0.0; s <= 1.0; s += 0.02) {
+        const Vector2d p = way[i] + s * (way[i + 1] - way[i]);
+        EXPECT_TRUE((p - between).norm() < reach || Walkway(world, 0.22).isFree(p))
+            << p.transpose();
+      }
+    }
+  }
+}
+
 TEST(SimulatorMotion, LimbsKeepTheirLengthsAndReachWhatIsInReach) {
   const Vector3f root(0, 0, 1);
   for (const Vector3f& target : {Vector3f(0.2F, 0.1F, 0.7F), Vector3f(0.0F, 0.3F, 0.8F),
@@ -110,15 +145,26 @@ TEST(SimulatorMotion, BonesOfAPostureHoldTogether) {
   }
 }
 
-/// No camera path jumps: the largest speed over a while.
-double fastest(const CameraPath& path, double duration_s) {
-  double most = 0.0;
+/// The largest over a while, at the rate of a motion capture.
+struct Extremes {
+  double speed_m_s = 0.0, turn_rad_s = 0.0, acceleration_m_s2 = 0.0;
+};
+
+Extremes extremesOf(const CameraPath& path, double duration_s) {
+  constexpr double kStepS = 0.005;
+  Extremes most;
   Eigen::Isometry3d before = path.at(0.0);
-  for (double t = 0.005; t < duration_s; t += 0.005) {
+  Eigen::Vector3d last = (path.at(kStepS).translation() - before.translation()) / kStepS;
+  for (double t = kStepS; t < duration_s; t += kStepS) {
     const Eigen::Isometry3d now = path.at(t);
-    most = std::max(most, (now.translation() - before.translation()).norm() / 0.005);
     EXPECT_NEAR(now.linear().determinant(), 1.0, 1e-6);
+    const Eigen::Vector3d velocity = (now.translation() - before.translation()) / kStepS;
+    const double angle = Eigen::AngleAxisd(before.linear().transpose() * now.linear()).angle();
+    most.speed_m_s = std::max(most.speed_m_s, velocity.norm());
+    most.turn_rad_s = std::max(most.turn_rad_s, angle / kStepS);
+    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, (velocity - last).norm() / kStepS);
     before = now;
+    last = velocity;
   }
   return most;
 }
@@ -128,7 +174,10 @@ TEST(SimulatorMotion, HandHeldCamerasMoveSmoothly) {
     HandHeld spec;
     spec.pattern = pattern;
     const auto path = makeHandHeld(spec, 5U);
-    EXPECT_LT(fastest(*path, 30.0), 1.6) << pattern;
+    const Extremes most = extremesOf(*path, 30.0);
+    EXPECT_LT(most.speed_m_s, 1.6) << pattern;
+    EXPECT_LT(most.turn_rad_s, 2.0) << pattern;
+    EXPECT_LT(most.acceleration_m_s2, 5.0) << pattern;
     const double still = (path->at(3.0).translation() - path->at(0.0).translation()).norm();
     if (std::string(pattern) == "static") {
       EXPECT_LT(still, 0.06);
@@ -141,7 +190,17 @@ TEST(SimulatorMotion, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
   spec.waypoints = {{1, 1}, {6, 1}, {6, 5}};
   spec.falls = {{9.0, "forward", 3.0, 0.8, 0.9}};
   const auto path = makeRobot(spec, 30.0, 3U);
-  EXPECT_LT(fastest(*path, 30.0), 9.0);
+  // A body that hits the floor is stopped within centimetres: some ten times gravity.
+  const Extremes falling = extremesOf(*path, 30.0);
+  EXPECT_LT(falling.speed_m_s, 6.0);
+  EXPECT_LT(falling.turn_rad_s, 9.0);
+  EXPECT_GT(falling.acceleration_m_s2, 60.0);
+  EXPECT_LT(falling.acceleration_m_s2, 250.0);
+  const Extremes walking = extremesOf(*path, 8.9);
+  EXPECT_LT(walking.speed_m_s, 0.6);
+  EXPECT_LT(walking.turn_rad_s, 2.0);
+  EXPECT_GT(walking.acceleration_m_s2, 5.0);
+  EXPECT_LT(walking.acceleration_m_s2, 30.0);
   ASSERT_EQ(path->events().size(), 1U);
   const Event fall = path->events()[0];
   EXPECT_EQ(fall.kind, "fall");

@@ -2,6 +2,8 @@
 // Scene files: the package's own are good, bad ones are refused with the place of the mistake.
 #include <gtest/gtest.h>
 
+#include "posefusion/simulator/furniture.hpp"
+#include "posefusion/simulator/scene_check.hpp"
 #include "simulator_scene.hpp"
 
 namespace posefusion::simulator {
@@ -35,6 +37,17 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
   EXPECT_EQ(loadScenario("hrpslam2").duration_s, 780.0);
 }
 
+TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
+  // The others have the people and the rooms of one of these.
+  for (const char* name : {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd"}) {
+    const Scenario s = loadScenario(name);
+    World world;
+    for (const auto& room : s.rooms) addRoom(world, room, 1U);
+    for (const auto& object : s.objects) addObject(world, object);
+    EXPECT_EQ(errorOf([&] { checkScene(s, world); }), "") << name;
+  }
+}
+
 TEST(SimulatorScenario, EveryValueCanBeChanged) {
   ScenarioChanges changes;
   changes.assignments = {"camera.period_s=7", "people.1.height_m=1.9", "color.noise=0"};
@@ -46,6 +59,13 @@ TEST(SimulatorScenario, EveryValueCanBeChanged) {
   EXPECT_EQ(s.duration_s, 2.5);
   changes.assignments = {"people.7.height_m=1.9"};
   EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }), "'7' is no entry"));
+  changes.assignments = {"duration_s.x=1"};
+  EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }),
+                       "--set duration_s.x=1: 'x' is within a single value"));
+  changes.assignments = {};
+  changes.start_s = 99999.0;
+  EXPECT_TRUE(contains(errorOf([&] { loadScenario("walking_xyz", changes); }),
+                       "walking_xyz: start_s is 99999, expected 0 to 36000"));
 }
 
 TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
@@ -64,11 +84,22 @@ TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
   EXPECT_TRUE(contains(loadError(kRoom + "people: [{script: [{do: fly}]}]"),
                        "people[0]: script[0]: do is 'fly'"));
   EXPECT_TRUE(contains(loadError("base: scene.yaml\n" + kRoom), "leads back"));
+  EXPECT_TRUE(contains(loadError("base: [a]\n" + kRoom), "scene.yaml: base is not"));
+  EXPECT_TRUE(contains(loadError(kRoom + "fps: 9\nfps: 8"), "scene.yaml: fps is given twice"));
+  EXPECT_TRUE(contains(loadError(kRoom + "seed: 1.5"), "seed is 1.5, expected a whole number"));
+  EXPECT_TRUE(contains(loadError(kRoom + "duration_s: 0"), "duration_s is 0, expected 0.05 to"));
+  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 6}"), "depth: min_m"));
+  EXPECT_TRUE(contains(loadError("rooms: [{walls: fur}]"), "rooms[0]: walls is 'fur'"));
+  const std::string robot = "camera: {motion: robot, waypoints: [[1, 1], [3, 1]], ";
+  EXPECT_TRUE(contains(loadError(kRoom + robot + "falls: [{at_s: 9}, {at_s: 3}]}"),
+                       "falls[1]: at_s is not after"));
+  EXPECT_TRUE(contains(loadError(kRoom + robot + "turn_deg_s: 0}"), "turn_deg_s"));
 }
 
 TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   const auto build = [](const std::string& rest) {
-    return errorOf([&] { Simulation simulation(load(kRoom + "duration_s: 0.2\n" + rest)); });
+    const std::string rooms = contains(rest, "rooms:") ? "" : kRoom;
+    return errorOf([&] { Simulation simulation(load(rooms + "duration_s: 0.2\n" + rest)); });
   };
   EXPECT_EQ(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}"), "");
   EXPECT_TRUE(contains(build("camera: {at_m: [-1, 1, 1.2], look_at_m: [3, 3, 1]}"), "outside"));
@@ -81,6 +112,20 @@ TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
                              "people: [{start_m: [2, 2], script: [{do: walk, to: [9, 2]}]}]"),
                        "people[0]: script[0]"));
+  const std::string table =
+      "camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
+      "objects: [{kind: table, at_m: [2.5, 2.5]}]\n";
+  EXPECT_TRUE(contains(build(table + "people: [{start_m: [2.5, 2.6]}]"),
+                       "scene.yaml: people[0]: start_m is (2.50, 2.60), inside"));
+  EXPECT_TRUE(
+      contains(build(table + "people: [{start_m: [1, 3], script: [{do: walk, to: [2.5, 2.5]}]}]"),
+               "people[0]: script[0]: to is (2.50, 2.50), inside"));
+  EXPECT_TRUE(contains(build("people: [{start_m: [1, 3], script: [{do: walk, to: [6, 3]}]}]\n"
+                             "rooms: [{size_m: [4, 4, 2.5]}, "
+                             "{origin_m: [4.2, 0], size_m: [4, 4, 2.5]}]\n"),
+                       "people[0]: script[0]: to is (6.00, 3.00), no way leads there"));
+  EXPECT_TRUE(contains(build("objects: [{kind: table, at_m: [9, 1]}]"),
+                       "scene.yaml: objects[0]: at_m is (9.00, 1.00), outside"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, texture: fur, at_m: [1, 1]}]"), "fur"));
 }
 

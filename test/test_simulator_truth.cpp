@@ -98,7 +98,7 @@ TEST(SimulatorTruth, VisibleJointsLieInTheMaskOfTheirPersonAndBehindItsSkin) {
 TEST(SimulatorTruth, PosesOfTheTrajectoryAreThoseOfTheFrames) {
   Simulation simulation(smallScenario());
   const SimulatedFrame frame = simulation.frame(5);
-  const Trajectory truth = simulation.truth();
+  const Trajectory truth = simulation.truth(simulation.frameCount());
   EXPECT_NEAR(static_cast<double>(truth.size()), 1.05 * 200.0, 2.0);
   double nearest = 1e9, distance = 1e9;
   for (const auto& pose : truth) {
@@ -109,6 +109,49 @@ TEST(SimulatorTruth, PosesOfTheTrajectoryAreThoseOfTheFrames) {
   }
   EXPECT_LE(nearest, 0.0026);
   EXPECT_LT(distance, 0.003);
+}
+
+/// A swinging camera without noise, with a rolling shutter, `later_s` after one second.
+SimulatedFrame swinging(double rolling_shutter_ms, double later_s) {
+  ScenarioChanges changes;
+  changes.assignments = {"camera.motion=rpy",
+                         "camera.period_s=0.8",
+                         "color.motion_blur=false",
+                         "color.auto_exposure=false",
+                         "color.noise=0",
+                         "color.blur_px=0",
+                         "color.rolling_shutter_ms=" + std::to_string(rolling_shutter_ms)};
+  changes.start_s = 1.0 + later_s;
+  Simulation simulation(load(smallScene(), changes));
+  return simulation.frame(0);
+}
+
+/// Mean difference of the grey values in some rows: of the world, or where `people` are.
+double difference(const cv::Mat& a, const cv::Mat& b, const cv::Range& rows, const cv::Mat& part) {
+  cv::Mat apart;
+  cv::absdiff(a.rowRange(rows), b.rowRange(rows), apart);
+  return cv::mean(apart, part.empty() ? part : part.rowRange(rows))[1];
+}
+
+TEST(SimulatorTruth, EachRowOfARollingShutterIsThatOfAGlobalOneAtItsMoment) {
+  constexpr int kBands = 15, kRows = 8;  // of 120 rows
+  const cv::Mat global = swinging(0.0, 0.0).frame.color;
+  for (const double readout_ms : {15.0, 30.0}) {
+    const cv::Mat rolling = swinging(readout_ms, 0.0).frame.color;
+    const cv::Range middle(kBands / 2 * kRows, (kBands / 2 + 1) * kRows);
+    EXPECT_LT(difference(rolling, global, middle, cv::Mat()), 0.3);
+    for (const int band : {5, 12}) {
+      const double later_s = 1e-3 * readout_ms * ((band + 0.5) / kBands - 0.5);
+      const SimulatedFrame then = swinging(0.0, later_s);
+      const cv::Range rows(band * kRows, (band + 1) * kRows);
+      for (const cv::Mat& part : {cv::Mat(then.mask == 0), cv::Mat(then.mask > 0)}) {
+        const double own = difference(rolling, then.frame.color, rows, part);
+        const double others = difference(rolling, global, rows, part);
+        EXPECT_LT(own, 0.2 * others) << readout_ms << " ms, band " << band;
+        EXPECT_GT(others, 0.2) << readout_ms << " ms, band " << band;
+      }
+    }
+  }
 }
 
 TEST(SimulatorTruth, SameSeedSameBytesOtherSeedOtherBytes) {
@@ -154,7 +197,7 @@ TEST(SimulatorTruth, TumFolderIsReadBack) {
   const auto source = openTumFolder(folder / "out");
   EXPECT_EQ(source->frameCount(), static_cast<std::size_t>(kept));
   EXPECT_EQ(source->people().size(), static_cast<std::size_t>(kept));
-  EXPECT_EQ(source->truth().size(), simulation.truth().size());
+  EXPECT_EQ(source->truth().size(), simulation.truth(10).size());
   const auto first = source->next();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->defect, "");

@@ -18,7 +18,8 @@ Vector3d inTurn(double time_s, double period_s) {
   const int axis = std::min(2, static_cast<int>(phase));
   const double within = phase - axis;
   Vector3d v = Vector3d::Zero();
-  v[axis] = std::sin(2.0 * M_PI * 2.0 * within) * std::min(1.0, 2.0 * std::sin(M_PI * within));
+  const double open = std::min(1.0, 2.0 * std::sin(M_PI * within));
+  v[axis] = std::sin(2.0 * M_PI * 2.0 * within) * open * (2.0 - open);
   return v;
 }
 

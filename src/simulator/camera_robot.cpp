@@ -16,10 +16,20 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kFloorHeightM = 0.24;
+/// Body and floor give way: the last part of a drop, and how quickly it is stopped.
+constexpr double kCrush = 0.107;
+constexpr double kStopS = 0.5 * kCrush / (1.0 - kCrush) * kDropS;  // no jump of the speed
+constexpr double kOnsetS = 0.02;                                   // of what rings through the body
 
 double smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
+}
+
+/// A damped swing that begins softly.
+double ringing(double since_s, double decay_s, double rad_s) {
+  return (1.0 - std::exp(-since_s / kOnsetS)) * std::exp(-since_s / decay_s) *
+         std::sin(rad_s * since_s);
 }
 
 class RobotPath : public CameraPath {
@@ -32,7 +42,10 @@ class RobotPath : public CameraPath {
                                         [](double x, const Piece& p) { return x < p.start_s; });
     const Piece& piece = after == pieces_.begin() ? *after : *(after - 1);
     const double since = std::clamp(t - piece.start_s, 0.0, piece.length_s);
-    if (piece.kind == Piece::Kind::fall) return fallen(piece, since);
+    if (piece.kind == Piece::Kind::fall) {
+      const double still = std::min(since / kStaggerS, (piece.length_s - since) / kGetUpS);
+      return fallen(piece, since) * balance(t, 1.0 - smooth(still));
+    }
     double part = since / piece.length_s;
     // Walking starts and ends softly, over one step.
     const double ramp = std::min(0.4, spec_.step_s / piece.length_s);
@@ -40,7 +53,8 @@ class RobotPath : public CameraPath {
     const Vector2d place = piece.from.at + part * (piece.to.at - piece.from.at);
     const double yaw = piece.from.yaw + part * (piece.to.yaw - piece.from.yaw);
     const bool moving = piece.kind != Piece::Kind::pause;
-    return standing(place, yaw) * gait(piece, moving ? since : -1.0, t);
+    const Isometry3d T = standing(place, yaw) * balance(t, 1.0);
+    return moving ? T * gait(piece, since) : T;
   }
 
   std::vector<Event> events() const override {
@@ -68,37 +82,45 @@ class RobotPath : public CameraPath {
     return lookAt(eye, eye + Vector3d(std::cos(yaw), std::sin(yaw), -std::tan(spec_.pitch_rad)));
   }
 
-  /// Movement of the head by walking, in the camera frame; `since` < 0: it stands.
-  Isometry3d gait(const Piece& piece, double since, double t) const {
+  static Isometry3d moved(const Vector3d& by, const Vector3d& turn) {
     Isometry3d T = Isometry3d::Identity();
-    const auto slow = [&](std::uint32_t salt) { return tremble(t, 0.2, 2.0, hash(seed_, salt)); };
-    Vector3d move(0.002 * slow(1U), 0.001 * slow(2U), 0.002 * slow(3U));
-    Vector3d turn(0.006 * slow(4U), 0.008 * slow(5U), 0.003 * slow(6U));
-    if (since >= 0.0) {
-      const double count = std::max(1.0, std::round(piece.length_s / spec_.step_s));
-      const double phase = since / piece.length_s * count;
-      const double step = std::floor(phase), within = phase - step;
-      const double strength = std::min({1.0, phase + 0.3, count - phase + 0.3});
-      const double side = std::fmod(piece.steps_before + step, 2.0) < 0.5 ? 1.0 : -1.0;
-      const double arc = std::sin(M_PI * within);
-      move += strength * Vector3d(side * spec_.sway_m * arc, -spec_.bounce_m * arc * arc, 0.0);
-      turn += strength * Vector3d(0.012 * std::sin(2.0 * M_PI * within), 0.010 * side * arc,
-                                  -0.020 * side * arc);
-      const double since_strike = within * piece.length_s / count;
-      addStrike(since_strike, static_cast<std::uint32_t>(piece.steps_before + step), strength, move,
-                turn);
-    }
-    T.translate(move);
+    T.translate(by);
     T.rotate(AngleAxisd(turn.z(), Vector3d::UnitZ()) * AngleAxisd(turn.y(), Vector3d::UnitY()) *
              AngleAxisd(turn.x(), Vector3d::UnitX()));
     return T;
+  }
+
+  /// Small slow movements of a body that keeps its balance, in the camera frame.
+  Isometry3d balance(double t, double strength) const {
+    const auto slow = [&](std::uint32_t salt) { return tremble(t, 0.2, 2.0, hash(seed_, salt)); };
+    return moved(strength * Vector3d(0.002 * slow(1U), 0.001 * slow(2U), 0.002 * slow(3U)),
+                 strength * Vector3d(0.006 * slow(4U), 0.008 * slow(5U), 0.003 * slow(6U)));
+  }
+
+  /// Movement of the head by walking, in the camera frame.
+  Isometry3d gait(const Piece& piece, double since) const {
+    const double count = std::max(1.0, std::round(piece.length_s / spec_.step_s));
+    const double phase = since / piece.length_s * count;
+    const double step = std::floor(phase), within = phase - step;
+    const double strength = std::min({1.0, phase + 0.3, count - phase + 0.3});
+    const double side = std::fmod(piece.steps_before + step, 2.0) < 0.5 ? 1.0 : -1.0;
+    // Standing still at both ends of the way, with the weight on one foot in between.
+    const double ends = smooth(std::min(phase, count - phase) / 0.5);
+    const double arc = std::sin(M_PI * within);
+    Vector3d move =
+        strength * Vector3d(side * spec_.sway_m * arc, -spec_.bounce_m * arc * arc, 0.0);
+    Vector3d turn = strength * Vector3d(0.012 * std::sin(2.0 * M_PI * within), 0.010 * side * arc,
+                                        -0.020 * side * arc);
+    addStrike(within * piece.length_s / count,
+              static_cast<std::uint32_t>(piece.steps_before + step), strength, move, turn);
+    return moved(ends * move, ends * turn);
   }
 
   /// The heel strike rings through the body: damped, about 10 Hz, never twice the same.
   void addStrike(double since_s, std::uint32_t step, double strength, Vector3d& move,
                  Vector3d& turn) const {
     const double height = spec_.jerk * strength * between(hash(seed_, 21U, step), 0.4, 1.6);
-    const double ring = height * std::exp(-since_s / 0.09) * std::sin(2.0 * M_PI * 9.5 * since_s);
+    const double ring = height * ringing(since_s, 0.09, 2.0 * M_PI * 9.5);
     move.y() += 0.0045 * ring;
     turn.x() += 0.016 * ring;
     turn.z() += 0.008 * ring * (uniform(hash(seed_, 22U, step)) - 0.5);
@@ -132,19 +154,20 @@ class RobotPath : public CameraPath {
       // It tips slowly, then gravity takes over.
       const double tip = 0.10 * std::pow(std::min(1.0, since / kStaggerS), 2.0);
       const double drop = std::max(0.0, (since - kStaggerS) / kDropS);
-      Isometry3d T = mix(up, down, tip + (1.0 - tip) * drop * drop);
-      T.rotate(AngleAxisd(0.05 * std::sin(18.0 * since) * since, Vector3d::UnitZ()));
+      Isometry3d T = mix(up, down, tip + (1.0 - tip) * (1.0 - kCrush) * drop * drop);
+      T.rotate(AngleAxisd(0.05 * std::sin(18.0 * since) * since * (1.0 - drop), Vector3d::UnitZ()));
       return T;
     }
-    const double ring = std::exp(-impact / 0.16);
     const double rise = smooth((impact - piece.fall.lie_s) / kGetUpS);
-    Isometry3d T = mix(down, again, rise);
-    T.translate(Vector3d(0.0, -0.05 * ring * std::abs(std::sin(14.0 * impact)), 0.0));
+    const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / kStopS);
+    Isometry3d T = mix(mix(up, down, crushed), again, rise);
+    const double hop = std::sin(14.0 * impact);
+    T.translate(Vector3d(0.0, -0.05 * std::exp(-impact / 0.16) * hop * hop, 0.0));
     const double effort = 4.0 * rise * (1.0 - rise);
-    T.rotate(AngleAxisd(0.16 * ring * std::sin(40.0 * impact) +
+    T.rotate(AngleAxisd(0.16 * ringing(impact, 0.16, 40.0) +
                             0.10 * effort * tremble(since, 0.5, 5.0, seed_ + 31U),
                         Vector3d::UnitX()) *
-             AngleAxisd(0.12 * ring * std::sin(31.0 * impact) +
+             AngleAxisd(0.12 * ringing(impact, 0.16, 31.0) +
                             0.10 * effort * tremble(since, 0.5, 5.0, seed_ + 32U),
                         Vector3d::UnitZ()));
     return T;

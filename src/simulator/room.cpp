@@ -90,8 +90,9 @@ void addWall(World& world, const Wall& wall, const RoomSpec& spec, const Surface
     const auto b = static_cast<float>(doorway.at_m + 0.5 * doorway.width_m);
     const auto h = static_cast<float>(doorway.height_m);
     if (a < from || b > wall.length || h >= height) {
-      throw InputError("doorway in the " + doorway.wall + " wall at_m " +
-                       std::to_string(doorway.at_m) + " does not fit into the wall");
+      throw InputError("doorways: the one in the " + doorway.wall +
+                       " wall does not fit, expected it within the wall, lower than the room, "
+                       "apart from others");
     }
     addPiece(world, wall, s, {from, a, 0.0F, height});
     addPiece(world, wall, s, {a, b, h, height});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/simulator/scenario_parts.hpp"
@@ -13,6 +14,20 @@ namespace posefusion::simulator {
 namespace {
 
 constexpr int kDeepestBase = 8;
+
+/// A key that is given twice would be lost without a word.
+void refuseTwins(const YAML::Node& node, const std::string& where) {
+  std::set<std::string> keys;
+  for (const auto& entry : node) {
+    if (node.IsSequence()) {
+      refuseTwins(entry, where);
+      continue;
+    }
+    const auto key = entry.first.as<std::string>("");
+    if (!keys.insert(key).second) throw InputError(where + ": " + key + " is given twice");
+    refuseTwins(entry.second, where);
+  }
+}
 
 YAML::Node parse(const std::string& text, const std::string& where) {
   try {
@@ -57,8 +72,10 @@ YAML::Node loadTree(const std::string& name, const std::string& beside, int dept
   }
   YAML::Node tree = parse(text, path);
   if (!tree.IsMap()) throw InputError(path + ": expected keys with values");
+  refuseTwins(tree, path);
   const YAML::Node base = tree["base"];
   if (!base) return tree;
+  if (!base.IsScalar()) throw InputError(path + ": base is not a name or file of a scene");
   const std::string folder = path.substr(0, path.find_last_of('/') + 1);
   YAML::Node whole = merged(loadTree(base.as<std::string>(), folder, depth + 1), tree);
   whole.remove("base");
@@ -84,6 +101,8 @@ void assign(YAML::Node tree, const std::string& assignment) {
         throw InputError("--set " + assignment + ": '" + key + "' is no entry of the list");
       }
       next.reset(node[std::stoul(key)]);
+    } else if (node.IsScalar()) {
+      throw InputError("--set " + assignment + ": '" + key + "' is within a single value");
     } else {
       next.reset(node[key]);
     }
@@ -110,6 +129,8 @@ void readTruth(YamlMap map, TruthConfig& truth) {
 Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& changes) {
   YAML::Node tree = loadTree(name_or_file, "", 0);
   for (const auto& assignment : changes.assignments) assign(tree, assignment);
+  if (changes.duration_s) tree["duration_s"] = *changes.duration_s;
+  if (changes.start_s) tree["start_s"] = *changes.start_s;
   YamlMap map(tree, name_or_file);
   Scenario s;
   s.name = map.text("name", name_or_file);
@@ -118,8 +139,6 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   s.duration_s = map.number("duration_s", s.duration_s, 0.05, 36000.0);
   s.start_s = map.number("start_s", s.start_s, 0.0, 36000.0);
   if (changes.seed) s.seed = *changes.seed;
-  if (changes.duration_s) s.duration_s = *changes.duration_s;
-  if (changes.start_s) s.start_s = *changes.start_s;
   s.fps = map.number("fps", s.fps, 0.5, 240.0);
   s.dropped = map.number("dropped", s.dropped, 0.0, 0.9);
   for (auto& room : map.maps("rooms")) s.rooms.push_back(readRoom(room));
@@ -137,6 +156,7 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   YamlMap color = map.map("color"), depth = map.map("depth");
   visitFields(s.color, color);
   visitFields(s.depth, depth);
+  if (s.depth.min_m >= s.depth.max_m) depth.fail("min_m", "is not less than max_m");
   color.finish();
   depth.finish();
   readTruth(map.map("truth"), s.truth);

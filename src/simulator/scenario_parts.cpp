@@ -58,6 +58,7 @@ Robot readRobot(YamlMap& map) {
   r.pitch_rad = map.angle("pitch_deg", r.pitch_rad);
   r.speed_m_s = map.number("speed_m_s", r.speed_m_s, 0.02, 2.0);
   r.turn_rad_s = map.angle("turn_deg_s", r.turn_rad_s);
+  if (r.turn_rad_s < 0.01) map.fail("turn_deg_s", "is too small, expected 1 or more");
   r.step_s = map.number("step_s", r.step_s, 0.2, 3.0);
   r.sway_m = map.number("sway_m", r.sway_m, 0.0, 0.2);
   r.bounce_m = map.number("bounce_m", r.bounce_m, 0.0, 0.2);
@@ -66,6 +67,9 @@ Robot readRobot(YamlMap& map) {
   for (auto& entry : map.maps("falls")) {
     Fall fall;
     fall.at_s = entry.number("at_s", 10.0, 0.0, 36000.0);
+    if (!r.falls.empty() && fall.at_s <= r.falls.back().at_s) {
+      entry.fail("at_s", "is not after the fall before");
+    }
     fall.direction = entry.word("to", "forward", {"forward", "backward", "sideways"});
     fall.lie_s = entry.number("lie_s", 3.0, 0.0, 60.0);
     fall.skip_m = entry.number("skip_m", 1.0, 0.0, 20.0);
@@ -95,9 +99,9 @@ RoomSpec readRoom(YamlMap& map) {
   r.origin_m = map.vector2("origin_m", r.origin_m);
   r.size_m = map.vector3("size_m", r.size_m);
   if (r.size_m.minCoeff() < 0.5) map.fail("size_m", "is too small, expected 0.5 m or more");
-  r.floor = map.text("floor", r.floor);
-  r.walls = map.text("walls", r.walls);
-  r.ceiling = map.text("ceiling", r.ceiling);
+  r.floor = map.word("floor", r.floor, textureKinds());
+  r.walls = map.word("walls", r.walls, textureKinds());
+  r.ceiling = map.word("ceiling", r.ceiling, textureKinds());
   r.wall_color = map.vector3("wall_color", r.wall_color);
   r.floor_color = map.vector3("floor_color", r.floor_color);
   const Vector2d lamps = map.vector2("lamps", Vector2d(r.lamps_x, r.lamps_y));
@@ -121,7 +125,7 @@ RoomSpec readRoom(YamlMap& map) {
 ObjectSpec readObject(YamlMap& map, std::uint32_t seed) {
   ObjectSpec o;
   o.kind = map.word("kind", "", objectKinds());
-  o.texture = map.text("texture", "");
+  if (map.has("texture")) o.texture = map.word("texture", "", textureKinds());
   o.at_m = readPlace(map, "at_m", 0.0);
   o.yaw_rad = map.angle("yaw_deg", 0.0);
   o.size_m = map.maybeVector3("size_m");

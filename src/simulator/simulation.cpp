@@ -8,38 +8,22 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/simulator/camera_check.hpp"
 #include "posefusion/simulator/random.hpp"
+#include "posefusion/simulator/scene_check.hpp"
 #include "posefusion/simulator/simulation_state.hpp"
 
 namespace posefusion::simulator {
 namespace {
 
 constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
-
-/// Everybody's goals must be somewhere a person can stand.
-void checkPeople(const Scenario& s, const World& world) {
-  const auto inside = [&](const Eigen::Vector2d& p) {
-    return std::any_of(world.rooms.begin(), world.rooms.end(), [&](const auto& room) {
-      return room.contains(Eigen::Vector3d(p.x(), p.y(), 0.5));
-    });
-  };
-  for (std::size_t i = 0; i < s.people.size(); ++i) {
-    const std::string who = "people[" + std::to_string(i) + "]";
-    if (!inside(s.people[i].start_m)) throw InputError(who + ": start_m is outside of all rooms");
-    for (std::size_t k = 0; k < s.people[i].script.size(); ++k) {
-      const Action& a = s.people[i].script[k];
-      const bool goes = a.kind == Action::Kind::walk || a.kind == Action::Kind::sit;
-      if (goes && !inside(a.at_m.head<2>())) {
-        throw InputError(who + ": script[" + std::to_string(k) + "] leads outside of all rooms");
-      }
-    }
-  }
-}
+constexpr double kAfterS = 0.05;  // of truth after the last frame: its depth is taken later
 
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario) : state_(std::make_unique<State>(scenario)) {
-  checkPeople(scenario, state_->world);
+Simulation::Simulation(const Scenario& scenario) try : state_(std::make_unique<State>(scenario)) {
+  checkScene(scenario, state_->world);
   checkCamera(*state_->path, state_->world, state_->caster, scenario.start_s + scenario.duration_s);
+} catch (const InputError& error) {
+  throw InputError(scenario.name + ": " + error.what());
 }
 
 Simulation::~Simulation() = default;
@@ -75,11 +59,12 @@ void Simulation::jump() {
   state_->exposure.restart();
 }
 
-Trajectory Simulation::truth() const {
+Trajectory Simulation::truth(int frames) const {
   const State& s = *state_;
   const TruthConfig& c = s.scenario.truth;
   Trajectory trajectory;
-  const int count = static_cast<int>(std::floor((s.scenario.duration_s + 0.05) * c.rate_hz)) + 1;
+  const int count =
+      static_cast<int>(std::floor((frames / s.scenario.fps + kAfterS) * c.rate_hz)) + 1;
   for (int i = 0; i < count; ++i) {
     const double t = s.scenario.start_s + i / c.rate_hz;
     if (c.gap_every_s > 0.0) {
@@ -99,11 +84,13 @@ Trajectory Simulation::truth() const {
   return trajectory;
 }
 
-std::vector<Event> Simulation::events() const {
-  const double from = state_->scenario.start_s, to = from + state_->scenario.duration_s;
+std::vector<Event> Simulation::events(int frames) const {
+  const double from = state_->scenario.start_s;
+  const double to = from + frames / state_->scenario.fps + kAfterS;
   std::vector<Event> events;
   for (const Event& e : state_->path->events()) {
-    if (e.end_s > from && e.start_s < to) events.push_back(e);
+    if (e.end_s <= from || e.start_s >= to) continue;
+    events.push_back({e.kind, std::max(e.start_s, from), std::min(e.end_s, to)});
   }
   return events;
 }

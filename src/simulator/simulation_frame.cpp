@@ -14,8 +14,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3f;
 
-constexpr double kWalkClearanceM = 0.30;
-
 World buildWorld(const Scenario& s) {
   World world;
   for (const auto& room : s.rooms) addRoom(world, room, hash(s.seed, 61U) % 1000U);

@@ -91,7 +91,7 @@ void saveJoints(const std::string& path, const std::vector<FrameRecord>& frames)
 void saveEvents(const std::string& path, const Simulation& simulation,
                 const std::vector<FrameRecord>& frames) {
   Json events = Json::array();
-  for (const Event& e : simulation.events()) {
+  for (const Event& e : simulation.events(static_cast<int>(frames.size()))) {
     events.push_back({{"kind", e.kind},
                       {"start", formatStamp(simulation.stampOf(e.start_s))},
                       {"end", formatStamp(simulation.stampOf(e.end_s))}});

@@ -57,7 +57,8 @@ class TumOutput : public Output {
          [](Text, Text d) { return d + " depth/" + d + ".png"; });
     list("associations.txt", "timestamp filename timestamp filename",
          [](Text c, Text d) { return c + " rgb/" + c + ".png " + d + " depth/" + d + ".png"; });
-    saveTrajectory(folder_ / "groundtruth.txt", simulation.truth(), "camera to world");
+    saveTrajectory(folder_ / "groundtruth.txt", simulation.truth(static_cast<int>(records_.size())),
+                   "camera to world");
     savePeople(folder_ / "people.json", people_);
     saveJoints(folder_ / "joints.json", records_);
     saveEvents(folder_ / "events.json", simulation, records_);

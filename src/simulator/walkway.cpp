@@ -18,7 +18,7 @@ bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
   const Vector2d d = p - f.centre;
   const Vector2d local(c * d.x() + s * d.y(), -s * d.x() + c * d.y());
   const Vector2d beyond = (local.cwiseAbs() - f.half_size).cwiseMax(0.0);
-  return beyond.norm() < margin_m;
+  return beyond.norm() <= margin_m;
 }
 
 }  // namespace
@@ -116,9 +116,16 @@ std::vector<int> Walkway::search(int from, int to) const {
   return cells;
 }
 
+bool Walkway::connects(const Vector2d& from, const Vector2d& to) const {
+  const Vector2d start = nearestFree(from), goal = nearestFree(to);
+  if (cellAt(start) < 0 || cellAt(goal) < 0) return false;
+  return seesFree(start, goal) || !search(cellAt(start), cellAt(goal)).empty();
+}
+
 std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to) const {
   const Vector2d start = nearestFree(from), goal = nearestFree(to);
   std::vector<Vector2d> way{from};
+  if (!isFree(from)) way.push_back(start);
   if (!seesFree(start, goal) && cellAt(start) >= 0 && cellAt(goal) >= 0) {
     const std::vector<int> cells = search(cellAt(start), cellAt(goal));
     Vector2d corner = start;
@@ -128,6 +135,7 @@ std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to)
       way.push_back(corner);
     }
   }
+  if (!isFree(to)) way.push_back(goal);
   way.push_back(to);
   return way;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "posefusion/core/error.hpp"
 
@@ -50,15 +51,18 @@ double YamlMap::number(const std::string& key, double otherwise, double min, dou
     fail(key, "is '" + shortText(node) + "', expected a number");
   }
   if (!(value >= min && value <= max)) {
-    fail(key, "is " + shortText(node) + ", expected " + shortText(YAML::Node(min)) + " to " +
-                  shortText(YAML::Node(max)));
+    std::ostringstream limits;
+    limits << min << " to " << max;
+    fail(key, "is " + shortText(node) + ", expected " + limits.str());
   }
   return value;
 }
 
 int YamlMap::integer(const std::string& key, int otherwise, int min, int max) {
   const double value = number(key, otherwise, min, max);
-  if (value != std::floor(value)) fail(key, "is not a whole number");
+  if (value != std::floor(value)) {
+    fail(key, "is " + shortText(get(key)) + ", expected a whole number");
+  }
   return static_cast<int>(value);
 }
 

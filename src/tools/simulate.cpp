@@ -21,7 +21,7 @@ using namespace posefusion;
 using namespace posefusion::simulator;
 
 volatile std::sig_atomic_t stop_asked = 0;
-void askStop(int) { stop_asked = 1; }
+void askStop(int signal) { stop_asked = signal; }
 
 struct Options {
   std::string scenario;
@@ -92,7 +92,7 @@ int record(Simulation& simulation, const Options& o) {
   output->finish(simulation);
   if (stop_asked == 0) return 0;
   std::cerr << "posefusion_simulate: stopped; " << made << " frames are in " << o.output << "\n";
-  return 130;
+  return 128 + stop_asked;
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "posefusion/core/error.hpp"
@@ -42,18 +44,25 @@ class BagOutput : public simulator::Output {
   explicit BagOutput(const std::string& path)
       : path_(path), part_(path + ".part" + std::to_string(getpid())) {
     if (std::filesystem::exists(path_)) throw InputError(path + ": is there, expected a new bag");
-    try {
-      bag_.open(part_, rosbag::bagmode::Write);
-      bag_.setCompression(rosbag::compression::LZ4);
-    } catch (const rosbag::BagException& error) {
-      throw InputError(path_ + ": cannot be written: " + error.what());
-    }
+    attempt([&] {
+      bag_->open(part_, rosbag::bagmode::Write);
+      bag_->setCompression(rosbag::compression::LZ4);
+    });
   }
   ~BagOutput() override {
-    if (!part_.empty()) std::remove(part_.c_str());
+    if (part_.empty()) return;
+    std::remove(part_.c_str());
+    try {
+      bag_->close();
+    } catch (const rosbag::BagException&) {
+      // On a full disk the bag's destructor would throw once more, and end the program.
+      [[maybe_unused]] static rosbag::Bag* unfinished = nullptr;
+      unfinished = bag_.release();
+    }
   }
 
   void add(const SimulatedFrame& frame) override {
+    ++frames_;
     if (frame.dropped) return;
     using namespace posefusion_ros;
     const auto color = headerAt(frame.frame.stamp_ns, frames::kOptical);
@@ -67,13 +76,13 @@ class BagOutput : public simulator::Output {
   }
 
   void finish(const Simulation& simulation) override {
-    for (const StampedPose& stamped : simulation.truth()) writePose(stamped);
-    for (const auto& event : simulation.events()) {
+    for (const StampedPose& stamped : simulation.truth(frames_)) writePose(stamped);
+    for (const auto& event : simulation.events(frames_)) {
       std_msgs::String text;
       text.data = event.kind + " until " + formatStamp(simulation.stampOf(event.end_s));
       write(kEvents, text, headerAt(simulation.stampOf(event.start_s), kWorld));
     }
-    bag_.close();
+    attempt([&] { bag_->close(); });
     std::error_code error;
     std::filesystem::rename(part_, path_, error);
     if (error) throw InputError(path_ + ": cannot be given its name: " + error.message());
@@ -83,10 +92,17 @@ class BagOutput : public simulator::Output {
  private:
   template <typename Message>
   void write(const char* topic, const Message& message, const std_msgs::Header& header) {
+    attempt([&] { bag_->write(topic, header.stamp, message); });
+  }
+
+  template <typename Call>
+  void attempt(const Call& call) const {
     try {
-      bag_.write(topic, header.stamp, message);
+      errno = 0;
+      call();
     } catch (const rosbag::BagException& error) {
-      throw InputError(path_ + ": cannot be written: " + error.what());
+      const std::string reason = errno != 0 ? std::strerror(errno) : error.what();
+      throw InputError(path_ + ": cannot be written: " + reason);
     }
   }
 
@@ -109,7 +125,8 @@ class BagOutput : public simulator::Output {
 
   std::string path_;
   std::string part_;
-  rosbag::Bag bag_;
+  int frames_ = 0;  // dropped ones too
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
 };
 
 }  // namespace

@@ -13,8 +13,7 @@ class Output {
  public:
   virtual ~Output() = default;
   virtual void add(const SimulatedFrame& frame) = 0;
-  /// Writes what can only be written at the end. What was added stays readable without it being
-  /// called twice.
+  /// Writes what can only be written at the end, and the truth of the frames that were added.
   virtual void finish(const Simulation& simulation) = 0;
 };
 

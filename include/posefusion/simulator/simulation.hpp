@@ -51,9 +51,11 @@ class Simulation {
   /// The next frame does not follow the last one: the exposure is found anew.
   void jump();
 
-  /// The camera at the rate of the motion capture, with its noise and gaps.
-  Trajectory truth() const;
-  std::vector<Event> events() const;  ///< seconds since the start of the scenario
+  /// The camera at the rate of the motion capture, with its noise and gaps, from the start to a
+  /// little after the first `frames` frames.
+  Trajectory truth(int frames) const;
+  /// What happened in that time, cut to it; seconds since the start of the scenario.
+  std::vector<Event> events(int frames) const;
   std::int64_t stampOf(double time_s) const;
   const World& world() const;
   const Scenario& scenario() const;

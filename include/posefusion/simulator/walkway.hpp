@@ -8,6 +8,9 @@
 
 namespace posefusion::simulator {
 
+/// How far the middle of a walker keeps from walls and furniture.
+constexpr double kWalkClearanceM = 0.30;
+
 /// The floor as cells of 10 cm that people can or cannot walk on.
 class Walkway {
  public:
@@ -18,6 +21,9 @@ class Walkway {
 
   /// The nearest free place.
   Eigen::Vector2d nearestFree(const Eigen::Vector2d& p) const;
+
+  /// Whether a way leads from one to the other, each moved to the nearest free place.
+  bool connects(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
   /// A way as a few straight legs, ends included; the straight line when there is none.
   std::vector<Eigen::Vector2d> findWay(const Eigen::Vector2d& from,
