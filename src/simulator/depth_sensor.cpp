@@ -56,11 +56,35 @@ class RowLuck {
   std::vector<float> above_, below_, across_, along_;
 };
 
-/// Arc cosine of [0, 1] to 7e-5 rad (Abramowitz and Stegun, 4.4.45).
-float angleOf(float cosine) {
-  const float x = std::min(1.0F, cosine);
-  return std::sqrt(1.0F - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - x * 0.0187293F)));
+/// What the noise needs to know of an angle between view and surface.
+struct Slant {
+  float theta_rad, lateral_px, tilt;
+};
+
+float tiltOf(double theta_rad) {
+  const double theta = std::min(theta_rad, kSteepestRad);
+  return static_cast<float>(0.0001 * theta * theta / ((M_PI_2 - theta) * (M_PI_2 - theta)));
 }
+
+/// The slant of a surface by the cosine of its angle, from a table: there is one for each pixel.
+const Slant& slantOf(float cosine) {
+  constexpr int kSteps = 4096;
+  static const std::vector<Slant> table = [] {
+    std::vector<Slant> slants;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double theta = std::acos(static_cast<double>(i) / kSteps);
+      slants.push_back({static_cast<float>(theta),
+                        static_cast<float>(lateralSigmaPx(std::min(theta, kSteepestRad))),
+                        tiltOf(theta)});
+    }
+    return slants;
+  }();
+  return table[static_cast<std::size_t>(std::clamp(cosine, 0.0F, 1.0F) * kSteps + 0.5F)];
+}
+
+int rounded(float x) { return static_cast<int>(x < 0.0F ? x - 0.5F : x + 0.5F); }
+
+float flatSigmaM(float z_m) { return 0.0012F + 0.0019F * (z_m - 0.4F) * (z_m - 0.4F); }
 
 /// Chance that the pattern is not found: too dark, seen too flat, or mirrored away.
 float dropoutChance(float z, float cosine, float theta, float infrared, float gloss) {
@@ -98,22 +122,16 @@ struct Source {
 /// Where the pixel's depth comes from: lateral noise takes it from a neighbour.
 Source displaced(const DepthView& view, const DepthConfig& config, int col, int row,
                  const RowLuck& luck) {
-  const float theta = angleOf(view.cosine.at<float>(row, col));
-  const double sigma = config.lateral * lateralSigmaPx(std::min<double>(theta, kSteepestRad)) * 0.7;
-  const int dx = static_cast<int>(std::lround(sigma * luck.across(col)));
-  const int dy = static_cast<int>(std::lround(sigma * luck.along(col)));
-  return {std::clamp(col + dx, 0, view.depth_m.cols - 1),
-          std::clamp(row + dy, 0, view.depth_m.rows - 1)};
+  const float sigma = 0.7F * static_cast<float>(config.lateral) *
+                      slantOf(view.cosine.at<float>(row, col)).lateral_px;
+  return {std::clamp(col + rounded(sigma * luck.across(col)), 0, view.depth_m.cols - 1),
+          std::clamp(row + rounded(sigma * luck.along(col)), 0, view.depth_m.rows - 1)};
 }
 
 }  // namespace
 
 double axialSigmaM(double z_m, double theta_rad) {
-  const double theta = std::min(theta_rad, kSteepestRad);
-  const double flat = 0.0012 + 0.0019 * (z_m - 0.4) * (z_m - 0.4);
-  const double tilted = 0.0001 / std::sqrt(std::max(z_m, 0.1)) * theta * theta /
-                        ((M_PI_2 - theta) * (M_PI_2 - theta));
-  return flat + tilted;
+  return flatSigmaM(static_cast<float>(z_m)) + tiltOf(theta_rad) / std::sqrt(std::max(z_m, 0.1));
 }
 
 double lateralSigmaPx(double theta_rad) { return 0.8 + 0.035 * theta_rad / (M_PI_2 - theta_rad); }
@@ -160,29 +178,30 @@ struct Sensing {
   const DepthView& view;
   const DepthConfig& config;
   std::uint32_t key;
-  double fb_steps;  ///< focal length x baseline, in steps of disparity
+  float fb_steps;  ///< focal length x baseline, in steps of disparity
   Distortion distortion;
 };
 
 /// The depth (m) reported at (col, row) for what is at `s`; 0: none.
-double reported(const Sensing& f, const Source& s, int col, int row, const RowLuck& noise) {
-  double z = f.view.depth_m.at<float>(s.row, s.col);
-  if (z <= 0.0 || !f.config.noise) return z;
+float reported(const Sensing& f, const Source& s, int col, int row, const RowLuck& noise) {
+  const float z = f.view.depth_m.at<float>(s.row, s.col);
+  if (z <= 0.0F || !f.config.noise) return z;
   const float cosine = f.view.cosine.at<float>(s.row, s.col);
-  const float theta = angleOf(cosine);
+  const Slant& slant = slantOf(cosine);
   // Dropouts come as specks of a few pixels rather than single ones.
   const std::uint32_t speck = hash(f.key, 0x77U, static_cast<std::uint32_t>(row) / 3U,
                                    static_cast<std::uint32_t>(col) / 3U);
   const std::uint32_t own = hash(speck, static_cast<std::uint32_t>(col % 3 * 3 + row % 3));
   const float luck = 0.6F * uniform(speck) + 0.4F * uniform(own);
   const float lost =
-      dropoutChance(static_cast<float>(z), cosine, theta, f.view.infrared.at<float>(s.row, s.col),
+      dropoutChance(z, cosine, slant.theta_rad, f.view.infrared.at<float>(s.row, s.col),
                     f.view.gloss.at<float>(s.row, s.col));
-  if (luck < f.config.dropouts * lost) return 0.0;
-  const double sigma = f.config.axial * axialSigmaM(z, theta);
-  z *= 1.0 + 0.5 * z * f.distortion.at(col, row);
-  z = std::max(z + sigma * noise.correlated(col), 0.05);
-  return f.fb_steps / std::max(1.0, std::round(f.fb_steps / z));
+  if (luck < static_cast<float>(f.config.dropouts) * lost) return 0.0F;
+  const float sigma = static_cast<float>(f.config.axial) *
+                      (flatSigmaM(z) + slant.tilt / std::sqrt(std::max(z, 0.1F)));
+  const float bent = z * (1.0F + 0.5F * z * f.distortion.at(col, row));
+  const float seen = std::max(bent + sigma * noise.correlated(col), 0.05F);
+  return f.fb_steps / static_cast<float>(std::max(1, rounded(f.fb_steps / seen)));
 }
 
 }  // namespace
@@ -191,7 +210,8 @@ void senseDepth(const DepthView& view, const PinholeCamera& camera, const DepthC
                 std::uint32_t key, cv::Mat& depth_mm, cv::Mat& mask) {
   depth_mm.create(view.depth_m.size(), CV_16UC1);
   mask.create(view.depth_m.size(), CV_8UC1);
-  const Sensing frame{view, config, key, camera.fx * config.baseline_m * config.disparity_steps,
+  const Sensing frame{view, config, key,
+                      static_cast<float>(camera.fx * config.baseline_m * config.disparity_steps),
                       Distortion(config, camera)};
   const int shift = static_cast<int>(std::lround(config.misregistration_px));
   parallelFor(static_cast<std::size_t>(camera.height), 4, [&](std::size_t begin, std::size_t end) {
@@ -204,12 +224,12 @@ void senseDepth(const DepthView& view, const PinholeCamera& camera, const DepthC
         const int from = std::clamp(col - shift, 0, camera.width - 1);
         const Source s =
             config.noise ? displaced(view, config, from, row, luck) : Source{from, row};
-        const double z =
-            shadow[static_cast<std::size_t>(from)] != 0 ? 0.0 : reported(frame, s, col, row, luck);
-        const bool seen = z > 0.0 && z >= config.min_m && z <= config.max_m;
+        const float z =
+            shadow[static_cast<std::size_t>(from)] != 0 ? 0.0F : reported(frame, s, col, row, luck);
+        const bool seen = z > 0.0F && z >= config.min_m && z <= config.max_m;
         mask.at<std::uint8_t>(row, col) = view.person.at<std::uint8_t>(s.row, s.col);
         depth_mm.at<std::uint16_t>(row, col) =
-            seen ? static_cast<std::uint16_t>(std::lround(1000.0 * z)) : 0;
+            seen ? static_cast<std::uint16_t>(rounded(1000.0F * z)) : 0;
       }
     }
   });
