@@ -111,6 +111,42 @@ TEST(SimulatorDepth, WithoutNoiseDepthIsExact) {
   EXPECT_EQ(cv::countNonZero(depth != 1235) * cv::countNonZero(depth != 1234), 0);
 }
 
+TEST(SimulatorDepth, MisregistrationMovesDepthAndMaskBesideTheColour) {
+  DepthView view = wall(3.0F);
+  view.depth_m(cv::Rect(300, 100, 100, 200)) = 1.5F;
+  view.person(cv::Rect(300, 100, 100, 200)) = 2;
+  DepthConfig config;
+  config.noise = false;
+  cv::Mat depth, mask, moved_depth, moved_mask;
+  senseDepth(view, xtion(), config, 1U, depth, mask);
+  config.misregistration_px = 3.0;
+  senseDepth(view, xtion(), config, 1U, moved_depth, moved_mask);
+  const cv::Rect from(0, 0, 637, 480), to(3, 0, 637, 480);
+  EXPECT_EQ(cv::norm(depth(from), moved_depth(to), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(mask(from), moved_mask(to), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(depth, moved_depth, cv::NORM_INF), 1000.0);
+}
+
+TEST(SimulatorColor, JpegCostsDetailByItsQuality) {
+  cv::Mat grey(96, 96, CV_32FC1), radiance;  // grey: JPEG halves the resolution of colours
+  cv::randu(grey, 0.0, 0.5);
+  cv::merge(std::vector<cv::Mat>(3, grey), radiance);
+  const auto picture = [&](int quality) {
+    ColorConfig config;
+    config.noise = 0.0;
+    config.jpeg_quality = quality;
+    cv::Mat out;
+    ColorSensor(config).expose(radiance, {16.0, 1.0}, 3U, out);
+    return out;
+  };
+  const cv::Mat plain = picture(0);
+  const double good = cv::norm(plain, picture(95), cv::NORM_L1) / (96.0 * 96.0 * 3.0);
+  const double bad = cv::norm(plain, picture(20), cv::NORM_L1) / (96.0 * 96.0 * 3.0);
+  EXPECT_GT(good, 0.0);
+  EXPECT_GT(bad, 1.5 * good);
+  EXPECT_LT(bad, 30.0);  // channels in their order, still the same picture
+}
+
 TEST(SimulatorColor, ExposureFollowsTheLightInSteps) {
   ColorConfig config;
   AutoExposure exposure(config);

@@ -111,6 +111,31 @@ TEST(SimulatorTruth, PosesOfTheTrajectoryAreThoseOfTheFrames) {
   EXPECT_LT(distance, 0.003);
 }
 
+TEST(SimulatorTruth, MotionCaptureHasTheNoiseAndTheGapsThatAreAskedFor) {
+  const Simulation clean(smallScenario({"duration_s=8"}));
+  const Simulation noisy(smallScenario(
+      {"duration_s=8", "truth.noise_m=0.01", "truth.gap_every_s=2", "truth.gap_s=0.5"}));
+  const Trajectory poses = clean.truth(clean.frameCount()),
+                   marked = noisy.truth(noisy.frameCount());
+  double squares = 0.0, longest_s = 0.0, missing_s = 0.0;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    const auto same_moment = std::find_if(poses.begin(), poses.end(), [&](const auto& pose) {
+      return pose.stamp_ns == marked[i].stamp_ns;
+    });
+    ASSERT_NE(same_moment, poses.end());
+    squares += (same_moment->T_world_camera.translation() - marked[i].T_world_camera.translation())
+                   .squaredNorm();
+    if (i == 0) continue;
+    const double step_s = static_cast<double>(marked[i].stamp_ns - marked[i - 1].stamp_ns) * 1e-9;
+    longest_s = std::max(longest_s, step_s);
+    missing_s += step_s > 0.01 ? step_s : 0.0;
+  }
+  EXPECT_NEAR(std::sqrt(squares / (3.0 * static_cast<double>(marked.size()))), 0.01, 0.001);
+  EXPECT_NEAR(longest_s, 0.5, 0.011);
+  EXPECT_GE(missing_s, 1.5);
+  EXPECT_LE(missing_s, 2.1);
+}
+
 /// A swinging camera without noise, with a rolling shutter, `later_s` after one second.
 SimulatedFrame swinging(double rolling_shutter_ms, double later_s) {
   ScenarioChanges changes;
