@@ -144,7 +144,7 @@ TEST(SimulatorColor, JpegCostsDetailByItsQuality) {
   const double bad = cv::norm(plain, picture(20), cv::NORM_L1) / (96.0 * 96.0 * 3.0);
   EXPECT_GT(good, 0.0);
   EXPECT_GT(bad, 1.5 * good);
-  EXPECT_LT(bad, 30.0);  // channels in their order, still the same picture
+  EXPECT_LT(bad, 30.0);  // still the same picture
 }
 
 TEST(SimulatorColor, ExposureFollowsTheLightInSteps) {
