@@ -105,30 +105,41 @@ Vector3f Renderer::shade(const RayPacket& packet, int lane, float pixel_rad,
                        : shadePerson(packet, lane, scene);
 }
 
-void Renderer::color(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
-                     cv::Mat& radiance) const {
-  radiance.create(camera.height, camera.width, CV_32FC3);
+bool Renderer::drawBlock(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
+                         const Eigen::Vector2i& corner, cv::Mat& radiance) const {
   const auto pixel_rad = static_cast<float>(1.0 / camera.fx);
-  const float weight = 1.0F / static_cast<float>(shutter.samples);
-  forBlocks(camera, [&](const Eigen::Vector2i& corner) {
-    std::array<Vector3f, 16> sum;
-    sum.fill(Vector3f::Zero());
-    RayPacket packet;
-    for (int s = 0; s < shutter.samples; ++s) {
-      aim(camera, shutter.at(corner.y(), camera.height, s), corner,
-          sampleOffset(s, shutter.samples), packet);
-      caster_.trace(packet);
-      scene.people.trace(packet);
-      for (int lane = 0; lane < 16; ++lane) {
-        if (packet.valid[lane] == 0) continue;
-        sum[static_cast<std::size_t>(lane)] += shade(packet, lane, pixel_rad, scene);
-      }
-    }
+  std::array<Vector3f, 16> sum;
+  sum.fill(Vector3f::Zero());
+  bool people = false;
+  RayPacket packet;
+  for (int s = 0; s < shutter.samples; ++s) {
+    aim(camera, shutter.at(corner.y(), camera.height, s), corner, sampleOffset(s, shutter.samples),
+        packet);
+    caster_.trace(packet);
+    scene.people.trace(packet);
     for (int lane = 0; lane < 16; ++lane) {
       if (packet.valid[lane] == 0) continue;
-      const Vector3f mean = weight * sum[static_cast<std::size_t>(lane)];
-      radiance.at<cv::Vec3f>(corner.y() + lane / 4, corner.x() + lane % 4) = {mean.x(), mean.y(),
-                                                                              mean.z()};
+      sum[static_cast<std::size_t>(lane)] += shade(packet, lane, pixel_rad, scene);
+      const std::uint32_t geometry = packet.rays.hit.geomID[lane];
+      people |= geometry != 0 && geometry != RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+  for (int lane = 0; lane < 16; ++lane) {
+    if (packet.valid[lane] == 0) continue;
+    const Vector3f mean = sum[static_cast<std::size_t>(lane)] / static_cast<float>(shutter.samples);
+    radiance.at<cv::Vec3f>(corner.y() + lane / 4, corner.x() + lane % 4) = {mean.x(), mean.y(),
+                                                                            mean.z()};
+  }
+  return people;
+}
+
+void Renderer::color(const PinholeCamera& camera, const Shutter& still, const Shutter& moving,
+                     const Scene& scene, cv::Mat& radiance) const {
+  radiance.create(camera.height, camera.width, CV_32FC3);
+  forBlocks(camera, [&](const Eigen::Vector2i& corner) {
+    const bool people = drawBlock(camera, still, scene, corner, radiance);
+    if (people && moving.samples > still.samples) {
+      drawBlock(camera, moving, scene, corner, radiance);
     }
   });
 }

@@ -86,19 +86,23 @@ double Simulation::State::smearOf(const Moments& m) const {
   return most;
 }
 
-int Simulation::State::samplesFor(const Moments& m, double smear_px) const {
-  const ColorConfig& c = scenario.color;
-  if (!c.motion_blur) return 1;
+double Simulation::State::limbSmearOf(const Moments& m) const {
   // Hands of a walker are about twice as fast as the walker.
   const Eigen::Vector3d eye = path->at(m.color).translation();
-  double limbs = 0.0;
+  double most = 0.0;
   for (std::size_t i = 0; i < people.size(); ++i) {
     const ActorState state = crowd.at(i, m.color);
     const double distance = std::max(0.5, (state.at - eye.head<2>()).norm());
     const double speed = 2.0 * state.speed_m_s + 0.6 * state.talk + 0.5 * state.reach;
-    limbs = std::max(limbs, speed * 1e-3 * m.exposure.time_ms / distance * scenario.camera.fx);
+    most = std::max(most, speed * 1e-3 * m.exposure.time_ms / distance * scenario.camera.fx);
   }
-  const int wanted = static_cast<int>(std::ceil(std::max(smear_px, limbs) / 3.0));
+  return most;
+}
+
+int Simulation::State::samplesFor(double smear_px) const {
+  const ColorConfig& c = scenario.color;
+  if (!c.motion_blur) return 1;
+  const int wanted = static_cast<int>(std::ceil(smear_px / 3.0));
   return std::clamp(wanted, c.samples, std::max(c.samples, c.max_samples));
 }
 
@@ -180,8 +184,9 @@ void Simulation::State::draw(const Shot& shot, SimulatedFrame& out) {
   out.exposure = m.exposure;
   out.smear_px = scenario.color.motion_blur ? smearOf(m) : 0.0;
   out.frame.camera = scenario.camera;
-  const Shutter shutter = shutterFor(m, samplesFor(m, out.smear_px));
-  renderer.color(scenario.camera, shutter, {shot.in_color, shot.light}, radiance);
+  const Shutter still = shutterFor(m, samplesFor(out.smear_px));
+  const Shutter moving = shutterFor(m, samplesFor(out.smear_px + limbSmearOf(m)));
+  renderer.color(scenario.camera, still, moving, {shot.in_color, shot.light}, radiance);
   const bool first = !exposure.isSet();
   exposure.look(radiance);
   if (first) out.exposure = exposure.current();

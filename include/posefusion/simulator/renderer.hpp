@@ -54,14 +54,18 @@ class Renderer {
  public:
   Renderer(const World& world, const RayCaster& caster) : world_(world), caster_(caster) {}
 
-  /// Mean radiance through the shutter, CV_32FC3 R G B.
-  void color(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
-             cv::Mat& radiance) const;
+  /// Mean radiance, CV_32FC3 R G B: through the shutter `still`, and again through `moving` where
+  /// that has more samples and the first showed people in the 4x4 pixels.
+  void color(const PinholeCamera& camera, const Shutter& still, const Shutter& moving,
+             const Scene& scene, cv::Mat& radiance) const;
 
   void depth(const PinholeCamera& camera, const ViewSample& view, const PosedPeople& people,
              DepthView& out) const;
 
  private:
+  /// True when it shows people.
+  bool drawBlock(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
+                 const Eigen::Vector2i& corner, cv::Mat& radiance) const;
   Eigen::Vector3f shade(const RayPacket& packet, int lane, float pixel_rad,
                         const Scene& scene) const;
   Eigen::Vector3f shadeWorld(const RayPacket& packet, int lane, float pixel_rad,

@@ -31,7 +31,8 @@ struct Simulation::State {
   Moments momentsOf(int index, const Exposure& exposure) const;
   bool isDropped(int index) const;
   double smearOf(const Moments& m) const;
-  int samplesFor(const Moments& m, double smear_px) const;
+  double limbSmearOf(const Moments& m) const;  ///< of the people's hands and feet, at the most
+  int samplesFor(double smear_px) const;
   Shutter shutterFor(const Moments& m, int samples) const;
 
   /// A frame about to be taken: its people posed and lit.
