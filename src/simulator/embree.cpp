@@ -29,6 +29,13 @@ void buildTree(RTCScene scene) {
   one_thread.execute([scene] { rtcCommitScene(scene); });
 }
 
+void intersect(RTCScene scene, RayPacket& packet) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(packet.valid, scene, &context, &packet.rays);
+}
+
 std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m) {
   alignas(64) RTCRay16 ray{};
   alignas(64) int valid[16]{};

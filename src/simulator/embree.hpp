@@ -28,6 +28,9 @@ float* makeVertices(RTCGeometry geometry, unsigned shape, std::size_t count);
 /// the same.
 void buildTree(RTCScene scene);
 
+/// Hits in the scene that are nearer than those in the packet.
+void intersect(RTCScene scene, RayPacket& packet);
+
 /// Whether anything in the scene lies between the points, apart from `margin_m` at both ends.
 std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m);
 

@@ -61,11 +61,7 @@ void PosedPeople::pose(const std::vector<Postures>& shapes) {
 }
 
 void PosedPeople::trace(RayPacket& packet) const {
-  if (people_.empty()) return;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(packet.valid, state_->scene.get(), &context, &packet.rays);
+  if (!people_.empty()) intersect(state_->scene.get(), packet);
 }
 
 std::array<bool, 16> PosedPeople::block(const SightPacket& sight, float margin_m) const {

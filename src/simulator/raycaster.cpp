@@ -39,15 +39,12 @@ RayCaster::RayCaster(const Mesh& world) : state_(std::make_unique<State>()) {
 RayCaster::~RayCaster() = default;
 
 void RayCaster::trace(RayPacket& packet) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int i = 0; i < 16; ++i) {
     packet.rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     packet.rays.ray.mask[i] = 0xFFFFFFFFU;
     packet.rays.ray.flags[i] = 0;
   }
-  rtcIntersect16(packet.valid, state_->scene.get(), &context, &packet.rays);
+  intersect(state_->scene.get(), packet);
 }
 
 void RayCaster::trace(RTCRayHit& ray) const {

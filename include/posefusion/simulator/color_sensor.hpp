@@ -41,7 +41,7 @@ class ColorSensor {
 
  private:
   ColorConfig config_;
-  cv::Mat soft_, vignette_;
+  cv::Mat soft_;
   std::vector<std::uint8_t> tone_;
 };
 
