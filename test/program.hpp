@@ -11,7 +11,7 @@
 
 #include "posefusion/io/files.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A program that runs, with stdout and stderr in one file.
 class Program {
@@ -45,4 +45,4 @@ class Program {
   pid_t pid_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

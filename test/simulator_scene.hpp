@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "posefusion/simulator/scenario.hpp"
-#include "posefusion/simulator/simulation.hpp"
+#include "simulator/scenario.hpp"
+#include "simulator/simulation.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 /// A small room with a table, a walker and a seated talker, small pictures: quick to build and
 /// draw.
@@ -38,4 +38,4 @@ inline Scenario smallScenario(const std::vector<std::string>& assignments = {}) 
   return load(smallScene(), changes);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -3,7 +3,7 @@
 
 #include "posefusion/core/camera.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// 160x120 pixels, 63 degrees wide.
 inline PinholeCamera smallCamera() {
@@ -16,4 +16,4 @@ inline PinholeCamera smallCamera() {
   return camera;
 }
 
-}  // namespace posefusion
+}  // namespace pf

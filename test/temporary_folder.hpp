@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace posefusion {
+namespace pf {
 
 /// A new folder that goes away with the test.
 class TemporaryFolder {
@@ -51,4 +51,4 @@ std::string errorOf(const Call& call) {
   return {};
 }
 
-}  // namespace posefusion
+}  // namespace pf

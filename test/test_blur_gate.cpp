@@ -5,7 +5,7 @@
 
 #include "posefusion/blur/gate.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 cv::Mat noiseImage() {
@@ -85,4 +85,4 @@ TEST(BlurGate, ResetForgets) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

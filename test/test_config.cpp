@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "posefusion/config.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/slam/config.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 std::string errorOf(const std::string& assignment) {
@@ -80,4 +80,4 @@ TEST(Config, ModesDifferByConfigurationAlone) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

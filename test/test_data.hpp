@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace posefusion {
+namespace pf {
 
 /// A file or folder of the test data: below POSEFUSION_TEST_DATA, or ../shared/data.
 inline std::string testData(const std::string& name) {
@@ -13,7 +13,7 @@ inline std::string testData(const std::string& name) {
   return std::string(folder != nullptr ? folder : "../shared/data") + "/" + name;
 }
 
-}  // namespace posefusion
+}  // namespace pf
 
 /// Skips the test where `path` does not exist, and says so.
 #define POSEFUSION_REQUIRE_DATA(path) \

@@ -4,9 +4,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "posefusion/tracking/depth_filter.hpp"
+#include "posefusion/frame/depth_filter.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 PinholeCamera smallCamera() {
@@ -147,4 +147,4 @@ TEST(ShrinkToIntensity, IsTheMeanGreyOfTheBlock) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 PinholeCamera camera() {
@@ -128,4 +128,4 @@ TEST(Rectifier, MovesPixelsToWhereAPinholeCameraSeesThem) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

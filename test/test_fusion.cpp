@@ -8,11 +8,11 @@
 
 #include "small_camera.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
-TrackingConfig fullResolution() {
-  TrackingConfig config;
+FrameConfig fullResolution() {
+  FrameConfig config;
   config.shrink = 1;
   return config;
 }
@@ -173,4 +173,4 @@ TEST(Compact, KeepsTheOrderOfTheOthers) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

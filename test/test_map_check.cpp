@@ -3,7 +3,7 @@
 
 #include "posefusion/evaluation/map_check.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 PinholeCamera camera() {
@@ -109,4 +109,4 @@ TEST(PeopleCheck, OfAnEmptyMapIsZero) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 #include "posefusion/io/map_file.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 SurfelMap mapOf(std::size_t count) {
@@ -69,4 +69,4 @@ TEST(MapFile, DamagedFilesAreErrors) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/mapper.hpp"
+#include "posefusion/slam/mapper.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "posefusion/map/surfel_map.hpp"
-#include "posefusion/synthetic/sequence.hpp"
+#include "synthetic/sequence.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 class MapperTest : public ::testing::Test {
@@ -25,7 +25,7 @@ class MapperTest : public ::testing::Test {
   }
   static Config config() {
     Config c;
-    c.tracking.shrink = 1;  // the images are small already
+    c.frame.shrink = 1;  // the images are small already
     return c;
   }
   static double errorM(const FrameStatus& status, const SyntheticFrame& truth) {
@@ -210,4 +210,4 @@ TEST_F(MapperTest, RenderedDepthAgreesWithTheTruth) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -8,7 +8,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/evaluation/masks.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 cv::Mat boxMask(const cv::Rect& box) {
@@ -26,7 +26,7 @@ TEST(MaskCheck, CountsByHand) {
   EXPECT_NEAR(check.falseFraction(), 0.25, 1e-12);
   check.add(boxMask({0, 0, 100, 100}), cv::Mat::zeros(100, 200, CV_8UC1));
   EXPECT_NEAR(check.crowded().iou, 1.0 / 6, 1e-12);
-  EXPECT_NEAR(check.crowded().precision, 0.5, 1e-12);  // nothing masked: no precision
+  EXPECT_NEAR(check.crowded().precision, 0.5, 1e-12);       // nothing masked: no precision
   check.add(boxMask({0, 0, 2, 2}), boxMask({0, 0, 2, 2}));  // under 2 %
   EXPECT_EQ(check.crowded().frames, 2);
   EXPECT_EQ(check.frames(), 3);
@@ -70,4 +70,4 @@ TEST(MaskCheck, ReadsFolders) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -8,9 +8,10 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/evaluation/metrics.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "test_data.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -223,4 +224,4 @@ INSTANTIATE_TEST_SUITE_P(Tum, AteReference,
                                                    2223, 0.008144}));
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

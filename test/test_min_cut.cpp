@@ -14,7 +14,7 @@
 #include "posefusion/segmentation/energy.hpp"
 #include "posefusion/segmentation/graph_cut.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr float kSigma = 0.25F;
@@ -27,7 +27,8 @@ std::vector<Eigen::Vector3f> makeCloud(unsigned seed) {
   std::normal_distribution<float> ball(0.0F, 0.08F);
   std::uniform_real_distribution<float> wall(-1.0F, 1.0F);
   std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 150; ++i) points.emplace_back(ball(random), ball(random), 1.5F + ball(random));
+  for (int i = 0; i < 150; ++i)
+    points.emplace_back(ball(random), ball(random), 1.5F + ball(random));
   for (int i = 0; i < 250; ++i) {
     points.emplace_back(wall(random), wall(random), 2.5F + 0.05F * wall(random));
   }
@@ -172,4 +173,4 @@ TEST(PaperTerms, AreThoseOfThePaper) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

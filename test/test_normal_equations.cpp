@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "posefusion/core/depth_noise.hpp"
-#include "posefusion/tracking/depth_filter.hpp"
+#include "posefusion/core/noise.hpp"
+#include "posefusion/frame/depth_filter.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// A wavy wall with a smooth brightness pattern, seen by a small camera.
@@ -198,4 +198,4 @@ TEST(NormalEquations, DoNotListenToHolesInTheFrame) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

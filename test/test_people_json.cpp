@@ -6,7 +6,7 @@
 #include "posefusion/io/people_json.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 People peopleAt(std::int64_t stamp_ns, std::size_t count) {
@@ -60,4 +60,4 @@ TEST(PeopleJson, ErrorsNameFileAndFrame) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

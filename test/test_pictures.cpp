@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "posefusion/core/se3.hpp"
-#include "posefusion/evaluation/plot.hpp"
-#include "posefusion/io/map_picture.hpp"
-#include "posefusion/io/people_picture.hpp"
+#include "posefusion/run/map_picture.hpp"
+#include "posefusion/run/people_picture.hpp"
+#include "posefusion/run/plot.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 int countColor(const cv::Mat& image, const cv::Vec3b& color) {
@@ -111,4 +111,4 @@ TEST(Plot, ShowsTruthEstimateAndDifference) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

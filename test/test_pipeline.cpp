@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/pipeline.hpp"
+#include "posefusion/slam/pipeline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/map/surfel_map.hpp"
-#include "posefusion/synthetic/sequence.hpp"
+#include "synthetic/sequence.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 Config smallConfig() {
   Config config;
-  config.tracking.shrink = 1;
+  config.frame.shrink = 1;
   config.pose.detector = "recorded";
   return config;
 }
@@ -113,4 +113,4 @@ TEST(Pipeline, ABadFrameInTheMiddleIsDroppedAndTheRestGoesOn) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

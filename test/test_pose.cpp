@@ -14,7 +14,7 @@
 #include "posefusion/pose/network.hpp"
 #include "test_data.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 cv::Mat blobAt(float x, float y, float height, cv::Size size = {54, 40}) {
@@ -106,8 +106,8 @@ TEST(Assembly, KeepsPeopleApart) {
   for (const Person& person : people) {
     const Keypoint& neck = person.joints[1];
     EXPECT_GT(neck.p, 0);
-    EXPECT_NEAR(person.joints[0].u, neck.u, 1e-3);        // the nose above its own neck
-    EXPECT_NEAR(person.joints[2].u, neck.u - 50, 1e-3);   // 5 map pixels = 50 image pixels
+    EXPECT_NEAR(person.joints[0].u, neck.u, 1e-3);       // the nose above its own neck
+    EXPECT_NEAR(person.joints[2].u, neck.u - 50, 1e-3);  // 5 map pixels = 50 image pixels
     EXPECT_NEAR(neck.v, (20 + 0.5) * 10 - 0.5, 1e-3);
     // Three peaks of 0.7 and two limbs of 0.8 over three parts.
     EXPECT_NEAR(person.score, (3 * 0.7 + 2 * 0.8) / 3, 1e-4);
@@ -198,7 +198,8 @@ TEST(Detector, RecordedPeopleComeByStamp) {
 
 std::string modelPath() {
   const auto data = std::filesystem::path(testData(""));
-  return (data.parent_path().parent_path() / "models/tf_pose_mobilenet_v2_small.opencv.pb").string();
+  return (data.parent_path().parent_path() / "models/tf_pose_mobilenet_v2_small.opencv.pb")
+      .string();
 }
 
 RgbdFrame photo(const std::string& name) {
@@ -256,4 +257,4 @@ TEST(Network, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

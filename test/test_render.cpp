@@ -9,7 +9,7 @@
 
 #include "small_camera.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 struct Disc {
@@ -149,4 +149,4 @@ TEST(SurfelRenderer, GivesTheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

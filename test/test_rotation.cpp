@@ -7,7 +7,7 @@
 
 #include "posefusion/core/se3.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 PinholeCamera camera80() {
@@ -65,4 +65,4 @@ TEST(AlignRotation, IsIdentityWhenPeopleFillTheView) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

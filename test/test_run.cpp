@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "posefusion/core/bounded_queue.hpp"
-#include "posefusion/io/run.hpp"
 #include "posefusion/map/surfel_map.hpp"
-#include "posefusion/synthetic/sequence.hpp"
+#include "posefusion/run/run.hpp"
+#include "synthetic/sequence.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr int kFrames = 20;
@@ -238,4 +238,4 @@ TEST(BoundedQueue, ClosingWakesWhoWaits) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -7,10 +7,11 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
-#include "posefusion/io/run_report.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/run_report.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -153,4 +154,4 @@ TEST(MakeFolder, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 
 #include "posefusion/core/se3.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 Vector6d randomTwist(std::mt19937& random, double angle) {
@@ -48,4 +48,4 @@ TEST(Se3, OrthonormalisedRepairsADriftedRotation) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -14,7 +14,7 @@
 
 #include <tbb/global_control.h>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
@@ -70,7 +70,8 @@ TEST(Segmenter, CutsAFigureOut) {
     ASSERT_FALSE(result.mask.empty());
     EXPECT_GT(iou(result.mask, scene.truth), std::string(energy) == "paper" ? 0.7 : 0.93) << energy;
     if (std::string(energy) == "improved") {
-      EXPECT_EQ(cv::countNonZero((result.static_depth > 0) & (scene.truth > 0)), 0) << "a rim is left";
+      EXPECT_EQ(cv::countNonZero((result.static_depth > 0) & (scene.truth > 0)), 0)
+          << "a rim is left";
     }
     EXPECT_EQ(result.people.people.size(), 1U);
   }
@@ -177,7 +178,8 @@ TEST(Segmenter, MillimetresAndMetresAgree) {
   Scene millimetres;
   metres.frame.depth.convertTo(millimetres.frame.depth, CV_16UC1, 1000.0);
   const Segmentation a = PeopleSegmenter({}).segment(metres.frame, metres.people, nullptr);
-  const Segmentation b = PeopleSegmenter({}).segment(millimetres.frame, millimetres.people, nullptr);
+  const Segmentation b =
+      PeopleSegmenter({}).segment(millimetres.frame, millimetres.people, nullptr);
   EXPECT_EQ(cv::countNonZero(a.mask != b.mask), 0);
   EXPECT_EQ(b.static_depth.type(), CV_16UC1);
 }
@@ -245,16 +247,16 @@ TEST(Segmenter, FivePeople) {
   EXPECT_EQ(people.people.size(), 5U);
   const Segmentation result = PeopleSegmenter({}).segment(frame, people, nullptr);
   // Boxes on the five trunks by eye, and three on walls and floor.
-  for (const cv::Rect& body : {cv::Rect(45, 150, 70, 200), cv::Rect(160, 170, 65, 150),
-                               cv::Rect(300, 170, 55, 130), cv::Rect(385, 170, 60, 150),
-                               cv::Rect(490, 140, 90, 200)}) {
+  for (const cv::Rect& body :
+       {cv::Rect(45, 150, 70, 200), cv::Rect(160, 170, 65, 150), cv::Rect(300, 170, 55, 130),
+        cv::Rect(385, 170, 60, 150), cv::Rect(490, 140, 90, 200)}) {
     EXPECT_GT(cv::countNonZero(result.mask(body)), 0.8 * body.area()) << body;
   }
-  for (const cv::Rect& room : {cv::Rect(150, 30, 300, 60), cv::Rect(240, 120, 30, 100),
-                               cv::Rect(250, 380, 40, 60)}) {
+  for (const cv::Rect& room :
+       {cv::Rect(150, 30, 300, 60), cv::Rect(240, 120, 30, 100), cv::Rect(250, 380, 40, 60)}) {
     EXPECT_LT(cv::countNonZero(result.mask(room)), 0.05 * room.area()) << room;
   }
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

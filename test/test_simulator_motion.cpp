@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "posefusion/simulator/camera_path.hpp"
-#include "posefusion/simulator/crowd.hpp"
-#include "posefusion/simulator/posture.hpp"
+#include "simulator/camera_path.hpp"
+#include "simulator/crowd.hpp"
+#include "simulator/posture.hpp"
 #include "simulator_scene.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -214,4 +214,4 @@ TEST(SimulatorMotion, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
 }
 
 }  // namespace
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -2,11 +2,11 @@
 // Scene files: the package's own are good, bad ones are refused with the place of the mistake.
 #include <gtest/gtest.h>
 
-#include "posefusion/simulator/furniture.hpp"
-#include "posefusion/simulator/scene_check.hpp"
+#include "simulator/furniture.hpp"
+#include "simulator/scene_check.hpp"
 #include "simulator_scene.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 std::string loadError(const std::string& text) {
@@ -130,4 +130,4 @@ TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
 }
 
 }  // namespace
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

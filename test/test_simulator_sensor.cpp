@@ -5,10 +5,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "posefusion/simulator/color_sensor.hpp"
-#include "posefusion/simulator/depth_sensor.hpp"
+#include "simulator/color_sensor.hpp"
+#include "simulator/depth_sensor.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 PinholeCamera xtion() { return {640, 480, 525, 525, 319.5, 239.5, {}}; }
@@ -183,4 +183,4 @@ TEST(SimulatorColor, GainRaisesTheNoise) {
 }
 
 }  // namespace
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

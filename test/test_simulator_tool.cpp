@@ -15,7 +15,7 @@
 #include "program.hpp"
 #include "simulator_scene.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST_F(SimulatorToolTest, OutputsThatCannotBeAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

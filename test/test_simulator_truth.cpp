@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "posefusion/io/frame_source.hpp"
-#include "posefusion/simulator/output.hpp"
-#include "posefusion/simulator/truth.hpp"
+#include "simulator/output.hpp"
+#include "simulator/truth.hpp"
 #include "simulator_scene.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 bool same(const cv::Mat& a, const cv::Mat& b) {
@@ -232,4 +232,4 @@ TEST(SimulatorTruth, TumFolderIsReadBack) {
 }
 
 }  // namespace
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/synthetic/sequence.hpp"
+#include "synthetic/sequence.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,7 +9,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 SyntheticOptions small() {
@@ -163,4 +163,4 @@ TEST(SyntheticSequence, ImpossibleOptionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -10,15 +10,17 @@
 #include <thread>
 #include <vector>
 
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/io/tum_writer.hpp"
-#include "posefusion/synthetic/sequence.hpp"
 #include "program.hpp"
+#include "synthetic/sequence.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,4 +222,4 @@ TEST_F(ToolsTest, CtrlCEndsItInOrderWithEverythingWritten) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -5,10 +5,11 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/stamps.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "temporary_folder.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 TEST(Stamp, ParsesDecimalsExactly) {
@@ -89,4 +90,4 @@ TEST(Trajectory, ErrorsNameFileAndLine) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

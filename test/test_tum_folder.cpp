@@ -12,7 +12,7 @@
 #include "temporary_folder.hpp"
 #include "test_data.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 PinholeCamera camera() {
@@ -247,4 +247,4 @@ TEST(CameraFile, SavedFileReadsBackAsTheSame) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// A thread that may call OpenNI2. The library keeps a record of every thread that ever called it,
 /// and when a new one comes it asks pthread_kill() of all the others whether they still live: for a
@@ -25,4 +25,4 @@ class ApiThread {
   std::unique_ptr<Running> running_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

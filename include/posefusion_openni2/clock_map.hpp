@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <mutex>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Maps the device's clock to the host's. The host sees a frame late, by a transfer time that
 /// varies; it never sees it early. So the smallest difference of host and device time is the best
@@ -43,4 +43,4 @@ class ClockMap {
   std::int64_t last_delay_ns_ = 0;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

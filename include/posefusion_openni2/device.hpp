@@ -9,7 +9,7 @@
 #include "posefusion_openni2/frame.hpp"
 #include "posefusion_openni2/settings.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Who the device is.
 struct DeviceIdentity {
@@ -83,4 +83,4 @@ class Device {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// A camera that OpenNI2 sees.
 struct DeviceDescription {
@@ -24,4 +24,4 @@ bool isFileName(const std::string& device);
 /// compare serial numbers. Needs a Session.
 std::string findUri(const std::string& device);
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

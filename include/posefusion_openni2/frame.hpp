@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 enum class StreamKind { color, depth };
 
@@ -38,4 +38,4 @@ struct StreamCounters {
   std::uint64_t damaged = 0;     ///< too short or of the wrong size: not passed on
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Keeps the OpenNI2 library initialised, with the drivers it found, while one of these lives. Any
 /// thread. Throws InputError when the library cannot start. The library loses 9 kB each time that
@@ -24,4 +24,4 @@ class Session {
   std::shared_ptr<Library> library_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

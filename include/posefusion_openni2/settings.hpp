@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Size and rate of a stream.
 struct StreamMode {
@@ -43,4 +43,4 @@ struct ExposureSettings {
   int max_exposure = 0;  ///< no exposure above this, in the device's steps; 0 is no limit
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

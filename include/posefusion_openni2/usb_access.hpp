@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Looks for depth cameras on the USB (vendor 1d27, PrimeSense and ASUS) that this process may not
 /// write to, as OpenNI2 has to. Says which, and which udev rule is missing; empty when there is
@@ -11,4 +11,4 @@ namespace posefusion::openni2 {
 std::string missingUsbPermission(const std::string& sysfs_devices = "/sys/bus/usb/devices",
                                  const std::string& device_nodes = "/dev/bus/usb");
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

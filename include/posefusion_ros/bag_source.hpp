@@ -28,11 +28,10 @@ struct InputOptions {
 /// all before it comes with a defect. The camera is that of the first camera_info; images of a
 /// topic with "rect" in its name are free of distortion. Throws InputError naming the bag and what
 /// is in it when it is damaged, or something is missing.
-std::unique_ptr<posefusion::FrameSource> openBag(const std::string& path,
-                                                 const InputOptions& options = {});
+std::unique_ptr<pf::FrameSource> openBag(const std::string& path, const InputOptions& options = {});
 
 /// A TUM folder, or a bag (a file).
-std::unique_ptr<posefusion::FrameSource> openInput(const std::string& path,
-                                                   const InputOptions& options = {});
+std::unique_ptr<pf::FrameSource> openInput(const std::string& path,
+                                           const InputOptions& options = {});
 
 }  // namespace posefusion_ros

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "posefusion/core/frame.hpp"
-#include "posefusion/mapper.hpp"
 #include "posefusion/pose/skeleton.hpp"
+#include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/messages.hpp"
 
 namespace posefusion_ros {
@@ -33,32 +33,30 @@ cv::Mat toDepth(const sensor_msgs::ImageConstPtr& image);
 /// The camera of the images that come with `info`, honouring binning and region of interest.
 /// `rectified`: the images are free of distortion, so P holds; else K and D. Throws InputError
 /// naming the field that no camera can have, or the distortion model where it is not plumb_bob.
-posefusion::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified);
+pf::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified);
 
 /// K, D (plumb_bob), P and size of a camera.
-sensor_msgs::CameraInfo toCameraInfo(const posefusion::PinholeCamera& camera,
+sensor_msgs::CameraInfo toCameraInfo(const pf::PinholeCamera& camera,
                                      const std_msgs::Header& header);
 
 /// A frame whose pixels are those of the messages wherever the encoding allows: the messages must
 /// live as long as it. Stamp of the colour. Throws InputError as above, or with what defectOf()
 /// says.
-posefusion::RgbdFrame toFrame(const sensor_msgs::ImageConstPtr& color,
-                              const sensor_msgs::ImageConstPtr& depth,
-                              const posefusion::PinholeCamera& camera);
+pf::RgbdFrame toFrame(const sensor_msgs::ImageConstPtr& color,
+                      const sensor_msgs::ImageConstPtr& depth, const pf::PinholeCamera& camera);
 
 /// A copy of the pixels as a message.
 sensor_msgs::ImagePtr toImage(const cv::Mat& pixels, const std::string& encoding,
                               const std_msgs::Header& header);
 
 /// The depth of a frame as a message: 16UC1 where its unit is a millimetre, else 32FC1 metres.
-sensor_msgs::ImagePtr toDepthImage(const posefusion::RgbdFrame& frame,
-                                   const std_msgs::Header& header);
+sensor_msgs::ImagePtr toDepthImage(const pf::RgbdFrame& frame, const std_msgs::Header& header);
 
-PeopleMsg toMessage(const posefusion::People& people, const std_msgs::Header& header);
-posefusion::People fromMessage(const PeopleMsg& message);
+PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header);
+pf::People fromMessage(const PeopleMsg& message);
 
 /// `header` has the stamp of the frame and the map frame; `pose` is the camera's in that frame.
-TrackingStatusMsg toMessage(const posefusion::FrameStatus& status, const std_msgs::Header& header,
+TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera);
 
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "posefusion/mapper.hpp"
+#include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/parameters.hpp"
 
 namespace posefusion_ros {
@@ -19,11 +19,11 @@ class MapOutput {
   MapOutput(ros::NodeHandle& handle, Parameters& parameters, const std::string& map_frame);
 
   /// `T_map_start`: the core's map in the map frame; nothing is published while it is unknown.
-  void publishSurfels(const posefusion::SurfelMap& map, const ros::Time& stamp,
+  void publishSurfels(const pf::SurfelMap& map, const ros::Time& stamp,
                       const std::optional<Eigen::Isometry3d>& T_map_start);
 
   /// The view as it is after the frame of `stamp`. `reset`: the map was emptied on request.
-  void publishView(const posefusion::ModelView& view, const ros::Time& stamp, bool reset);
+  void publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset);
 
   /// The next surfels go out at once.
   void reset() { surfels_sent_ = ros::Time(); }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/trajectory.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
 namespace posefusion_ros {
@@ -21,14 +21,13 @@ class MapSaver {
 
   /// Returns a sentence that tells where everything is. Throws InputError naming what cannot be
   /// written.
-  std::string save(const posefusion::SurfelMap& map, const posefusion::Trajectory& trajectory);
+  std::string save(const pf::SurfelMap& map, const pf::Trajectory& trajectory);
 
   /// The same, but an error is the sentence that is returned.
-  std::string tryToSave(const posefusion::SurfelMap& map, const posefusion::Trajectory& trajectory);
+  std::string tryToSave(const pf::SurfelMap& map, const pf::Trajectory& trajectory);
 
   /// As save(), into a numbered folder below, so that a later save does not write over it.
-  std::string saveBeforeReset(const posefusion::SurfelMap& map,
-                              const posefusion::Trajectory& trajectory);
+  std::string saveBeforeReset(const pf::SurfelMap& map, const pf::Trajectory& trajectory);
 
  private:
   std::string folder_;

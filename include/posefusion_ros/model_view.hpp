@@ -3,17 +3,17 @@
 
 #include <std_msgs/Header.h>
 
-#include "posefusion/map/model_view.hpp"
+#include "posefusion/frame/model_view.hpp"
 #include "posefusion_ros/messages.hpp"
 
 namespace posefusion_ros {
 
 /// A copy of the view's planes (depth, normals, intensity). `header` has the stamp of the frame
 /// after which the view holds.
-ModelViewMsg::Ptr toMessage(const posefusion::ModelView& view, const std_msgs::Header& header);
+ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& header);
 
 /// The view on the message's bytes: the message must live as long as it. Empty where there was no
 /// map. Throws InputError when the message is not one of ours.
-posefusion::ModelView fromMessage(const ModelViewMsg::ConstPtr& message);
+pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message);
 
 }  // namespace posefusion_ros

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "posefusion/config.hpp"
+#include "posefusion/slam/config.hpp"
 
 namespace posefusion_ros {
 
@@ -20,7 +20,7 @@ struct Range {
   double max = 0.0;
 };
 
-/// The private parameters of one nodelet: its own ones, and the groups of posefusion::Config
+/// The private parameters of one nodelet: its own ones, and the groups of pf::Config
 /// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by
 /// unknown(). Errors are InputError naming parameter, value and what was expected.
 class Parameters {
@@ -38,7 +38,7 @@ class Parameters {
 
   /// The chain's configuration: defaults, then the groups, then `mode` where it is not empty.
   /// `groups` are those that this nodelet uses, for effective().
-  posefusion::Config config(const std::vector<std::string>& groups);
+  pf::Config config(const std::vector<std::string>& groups);
 
   /// Parameters that were set but that nobody asked for.
   std::vector<std::string> unknown() const;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "posefusion/mapper.hpp"
+#include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/parameters.hpp"
 #include "posefusion_ros/transforms.hpp"
 
@@ -39,7 +39,7 @@ class PoseOutput {
 
   /// Publishes the pose of a fused frame; `image` is the header of its colour image. Returns what
   /// is missing (a transform), empty when all is well; nothing is published then.
-  std::string publish(const std_msgs::Header& image, const posefusion::FrameStatus& status);
+  std::string publish(const std_msgs::Header& image, const pf::FrameStatus& status);
 
   /// The core's map in the map frame; nothing until the first pose could be published.
   const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
@@ -51,7 +51,7 @@ class PoseOutput {
   bool look(const std_msgs::Header& image, Links& links, std::string& error) const;
   void sendTransform(const ros::Time& stamp, const std::string& child, const Eigen::Isometry3d& T);
   void sendOdometry(const ros::Time& stamp, const std::string& base, const Eigen::Isometry3d& T,
-                    const posefusion::FrameStatus& status);
+                    const pf::FrameStatus& status);
   void extendPath(const geometry_msgs::PoseStamped& pose);
 
   PoseOutputSettings settings_;

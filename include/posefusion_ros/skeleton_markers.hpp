@@ -11,8 +11,7 @@ namespace posefusion_ros {
 
 /// Skeletons in the camera's optical frame: a line per limb whose two joints were seen and have
 /// depth. Begins with a marker that deletes those of the frame before.
-visualization_msgs::MarkerArray toMarkers(const posefusion::People& people,
-                                          const posefusion::RgbdFrame& frame,
+visualization_msgs::MarkerArray toMarkers(const pf::People& people, const pf::RgbdFrame& frame,
                                           const std_msgs::Header& header);
 
 }  // namespace posefusion_ros

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace posefusion {
+namespace pf {
 
 double scoreBlur(const cv::Mat& color) {
   cv::Mat grey, response;
@@ -51,4 +51,4 @@ void BlurGate::reset() {
   drops_in_a_row_ = 0;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion {
+namespace pf {
 
 bool PinholeCamera::isDistorted() const {
   for (const double d : distortion) {
@@ -49,4 +49,4 @@ void validate(const PinholeCamera& camera) {
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -8,7 +8,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 std::string sizeText(const cv::Size& size) {
@@ -55,7 +55,8 @@ void depthInMetres(const RgbdFrame& frame, double min_depth_m, double max_depth_
   parallelFor(depth_m.rows, 32, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       if (integer) {
-        convertRow(frame.depth.ptr<std::uint16_t>(v), depth_m.ptr<float>(v), width, unit, low, high);
+        convertRow(frame.depth.ptr<std::uint16_t>(v), depth_m.ptr<float>(v), width, unit, low,
+                   high);
       } else {
         convertRow(frame.depth.ptr<float>(v), depth_m.ptr<float>(v), width, 1.0F, low, high);
       }
@@ -67,8 +68,8 @@ RgbdFrame Rectifier::rectify(const RgbdFrame& frame) {
   if (!frame.camera.isDistorted()) return frame;
   if (map1_.empty() || camera_ != frame.camera) {
     camera_ = frame.camera;
-    const cv::Mat K = (cv::Mat_<double>(3, 3) << camera_.fx, 0, camera_.cx, 0, camera_.fy,
-                       camera_.cy, 0, 0, 1);
+    const cv::Mat K =
+        (cv::Mat_<double>(3, 3) << camera_.fx, 0, camera_.cx, 0, camera_.fy, camera_.cy, 0, 0, 1);
     const std::vector<double> D(camera_.distortion.begin(), camera_.distortion.end());
     cv::initUndistortRectifyMap(K, D, cv::Mat(), K, {camera_.width, camera_.height}, CV_32FC1,
                                 map1_, map2_);
@@ -82,4 +83,4 @@ RgbdFrame Rectifier::rectify(const RgbdFrame& frame) {
   return out;
 }
 
-}  // namespace posefusion
+}  // namespace pf

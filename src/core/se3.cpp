@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // Coefficients of the exponential series; below this angle the Taylor form is exact to rounding.
@@ -65,4 +65,4 @@ Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
   return out;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -2,11 +2,94 @@
 #include "posefusion/core/stamps.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <iomanip>
+#include <limits>
 #include <numeric>
+#include <sstream>
 #include <tuple>
 
-namespace posefusion {
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+constexpr int kStampDigits = 9;  // nanoseconds
+
+/// A decimal number as its digits and the place of its point: "12.5e1" is 125 with the point
+/// after 3.
+struct Decimal {
+  bool negative = false;
+  std::string digits;
+  long point = 0;
+};
+
+[[noreturn]] void failStamp(const std::string& text) {
+  throw InputError("'" + text + "' is no stamp, expected decimal seconds");
+}
+
+Decimal parseDecimal(const std::string& text) {
+  Decimal decimal;
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '-' || text[i] == '+')) decimal.negative = text[i++] == '-';
+  bool past_point = false;
+  for (; i < text.size() && (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.');
+       ++i) {
+    if (text[i] == '.') {
+      if (past_point) failStamp(text);
+      past_point = true;
+      continue;
+    }
+    decimal.digits += text[i];
+    if (!past_point) ++decimal.point;
+  }
+  if (decimal.digits.empty()) failStamp(text);
+  if (i == text.size()) return decimal;
+  if (text[i] != 'e' && text[i] != 'E') failStamp(text);
+  const std::string exponent = text.substr(i + 1);
+  std::size_t used = 0;
+  int power = 0;
+  try {
+    power = std::stoi(exponent, &used);
+  } catch (const std::exception&) {
+    failStamp(text);
+  }
+  if (used != exponent.size() || std::abs(power) > 30) failStamp(text);
+  decimal.point += power;
+  return decimal;
+}
+
+}  // namespace
+
+std::int64_t parseStamp(const std::string& seconds) {
+  const Decimal decimal = parseDecimal(seconds);
+  const long count = decimal.point + kStampDigits;  // digits that make up the nanoseconds
+  std::int64_t value = 0;
+  for (long i = 0; i < count; ++i) {
+    const int digit = i < static_cast<long>(decimal.digits.size())
+                          ? decimal.digits[static_cast<std::size_t>(i)] - '0'
+                          : 0;
+    if (value > (std::numeric_limits<std::int64_t>::max() - digit) / 10) failStamp(seconds);
+    value = 10 * value + digit;
+  }
+  // Digits beyond a nanosecond are rounded.
+  if (count >= 0 && count < static_cast<long>(decimal.digits.size()) &&
+      decimal.digits[static_cast<std::size_t>(count)] >= '5') {
+    ++value;
+  }
+  return decimal.negative ? -value : value;
+}
+
+std::string formatStamp(std::int64_t stamp_ns) {
+  const std::int64_t second = 1'000'000'000;
+  const std::int64_t size = std::abs(stamp_ns);
+  const bool micro = size % 1000 == 0;
+  std::ostringstream text;
+  text << (stamp_ns < 0 ? "-" : "") << size / second << '.' << std::setfill('0')
+       << std::setw(micro ? 6 : 9) << (micro ? size % second / 1000 : size % second);
+  return text.str();
+}
 
 std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
     const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second,
@@ -38,4 +121,4 @@ std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
   return pairs;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr double kMinDepthM = 0.1;
@@ -88,4 +88,4 @@ double PeopleCheck::part() const {
   return surfels() > 0 ? static_cast<double>(onPeople()) / static_cast<double>(surfels()) : 0.0;
 }
 
-}  // namespace posefusion
+}  // namespace pf

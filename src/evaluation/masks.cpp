@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/people_json.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,21 +173,22 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
   if (truths.empty() && !is_sequence) {
     throw InputError(truth_folder + ": neither <stamp>.png masks nor a sequence");
   }
-  if (masks.empty()) throw InputError(mask_folder + ": no <stamp>.png masks (run with --save-masks)");
+  if (masks.empty())
+    throw InputError(mask_folder + ": no <stamp>.png masks (run with --save-masks)");
   MaskCheck check;
   for (const auto& [stamp, path] : masks) {
     const cv::Mat mask = loadMask(path);
     const auto truth = truths.find(stamp);
     if (truth == truths.end() && !truths.empty()) continue;
-    check.add(truths.empty() ? cv::Mat(mask.size(), CV_8UC1, cv::Scalar(0))
-                             : loadMask(truth->second),
-              mask);
+    check.add(
+        truths.empty() ? cv::Mat(mask.size(), CV_8UC1, cv::Scalar(0)) : loadMask(truth->second),
+        mask);
   }
   if (check.frames() == 0) {
     throw InputError(mask_folder + ": no mask has a stamp of " + truth_masks.string());
   }
-  for (const fs::path& people : {fs::path(mask_folder) / "people.json",
-                                 fs::path(mask_folder) / ".." / "people.json"}) {
+  for (const fs::path& people :
+       {fs::path(mask_folder) / "people.json", fs::path(mask_folder) / ".." / "people.json"}) {
     if (!fs::exists(people) || !is_sequence || truths.empty()) continue;
     checkFound(truth_folder, people.string(), truths, masks, check);
     break;
@@ -196,4 +196,4 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
   return check;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -12,7 +12,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
@@ -154,4 +154,4 @@ RelativeError relativeErrorPerSecond(const Trajectory& truth, const Trajectory& 
   });
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -11,7 +11,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -125,4 +125,4 @@ void saveCamera(const std::string& path, const CameraFile& file) {
   out.commit();
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -11,7 +11,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 std::string reason() { return errno != 0 ? std::strerror(errno) : "unknown reason"; }
@@ -65,4 +65,4 @@ void makeFolder(const std::string& path) {
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -9,7 +9,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// JPEG decoders fill what is missing at the end with grey. The end-of-image marker has to follow
@@ -64,4 +64,4 @@ void savePng(const std::string& path, const cv::Mat& image) {
   file.commit();
 }
 
-}  // namespace posefusion
+}  // namespace pf

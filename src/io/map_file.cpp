@@ -11,7 +11,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // Six floats, three bytes, two floats, without gaps.
@@ -94,4 +94,4 @@ SurfelArrays loadMap(const std::string& path) {
   return surfels;
 }
 
-}  // namespace posefusion
+}  // namespace pf

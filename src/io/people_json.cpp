@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 using nlohmann::json;
@@ -114,4 +114,4 @@ void savePeople(const std::string& path, const std::vector<People>& frames) {
   file.commit();
 }
 
-}  // namespace posefusion
+}  // namespace pf

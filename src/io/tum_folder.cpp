@@ -11,8 +11,9 @@
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +176,4 @@ std::unique_ptr<FrameSource> openTumFolder(const std::string& folder,
   return std::make_unique<TumFolder>(folder, camera_file);
 }
 
-}  // namespace posefusion
+}  // namespace pf

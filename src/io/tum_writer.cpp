@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/camera_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +99,4 @@ void TumWriter::finish() {
   if (!state_->people.empty()) savePeople(state_->folder / "people.json", state_->people);
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
-#include "rigid_motion.hpp"
+#include "posefusion/core/rigid_motion.hpp"
 #include "surfel_update.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr std::size_t kSurfelGrain = 4096;
@@ -150,4 +150,4 @@ std::size_t compact(const std::vector<std::uint8_t>& doomed, SurfelArrays& surfe
   return doomed.size() - kept;
 }
 
-}  // namespace posefusion
+}  // namespace pf

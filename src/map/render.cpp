@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
-#include "rigid_motion.hpp"
+#include "posefusion/core/rigid_motion.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr std::size_t kSurfelGrain = 4096;
@@ -243,4 +243,4 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   });
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/map/surfel_map.hpp"
 
-namespace posefusion {
+namespace pf {
 
 std::size_t SurfelMap::capacity() const {
   return static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0) /
@@ -20,4 +20,4 @@ void SurfelMap::clear() {
   refused_ = 0;
 }
 
-}  // namespace posefusion
+}  // namespace pf

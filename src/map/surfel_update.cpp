@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surfel_update.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr float kNearM = 0.1F;
@@ -124,4 +124,4 @@ void SurfelUpdate::mergeNormal(std::size_t i, float share, const Eigen::Vector3f
   s_.nz[i] = z * inverse;
 }
 
-}  // namespace posefusion
+}  // namespace pf

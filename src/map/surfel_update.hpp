@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/noise.hpp"
+#include "posefusion/core/rigid_motion.hpp"
+#include "posefusion/frame/working_frame.hpp"
 #include "posefusion/map/surfel_map.hpp"
-#include "posefusion/tracking/working_frame.hpp"
-#include "rigid_motion.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Weight of a measurement: 1 / variance, 1 at a distance of 1 m.
 inline float measurementWeight(float z) {
@@ -56,4 +56,4 @@ class SurfelUpdate {
   float fx_, fy_, cx_, cy_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

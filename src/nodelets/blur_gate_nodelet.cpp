@@ -31,7 +31,7 @@ class BlurGateNodelet : public ChainNodelet {
     missing_after_s_ = parameters.number("missing_after_s", 5.0, {0.1, 1e6});
     report(parameters);
 
-    gate_ = std::make_unique<posefusion::BlurGate>(config_);
+    gate_ = std::make_unique<pf::BlurGate>(config_);
     InputPairing::Handlers handlers;
     handlers.set = [this](const auto& color, const auto& depth, const auto& info) {
       guarded(color->header, [&] { onSet(color, depth, info); });
@@ -70,13 +70,13 @@ class BlurGateNodelet : public ChainNodelet {
     const std::string color_frame = plainFrame(color->header.frame_id);
     const std::string depth_frame = plainFrame(depth->header.frame_id);
     if (require_same_frame_ && color_frame != depth_frame) {
-      throw posefusion::InputError("colour is in frame '" + color_frame + "' but depth in '" +
-                                   depth_frame + "', expected depth registered to colour");
+      throw pf::InputError("colour is in frame '" + color_frame + "' but depth in '" + depth_frame +
+                           "', expected depth registered to colour");
     }
-    const posefusion::PinholeCamera camera = toCamera(*info, rectified_ == "yes");
-    const posefusion::RgbdFrame frame = toFrame(color, depth, camera);
-    const posefusion::RgbdFrame straight = rectifier_.rectify(frame);
-    const posefusion::BlurScore blur = gate_->judge(posefusion::scoreBlur(straight.color));
+    const pf::PinholeCamera camera = toCamera(*info, rectified_ == "yes");
+    const pf::RgbdFrame frame = toFrame(color, depth, camera);
+    const pf::RgbdFrame straight = rectifier_.rectify(frame);
+    const pf::BlurScore blur = gate_->judge(pf::scoreBlur(straight.color));
     publishScore(color->header, blur);
     if (!blur.sharp) {
       reject(color->header, TrackingStatusMsg::BLURRED,
@@ -87,7 +87,7 @@ class BlurGateNodelet : public ChainNodelet {
     pass(straight, color, depth);
   }
 
-  void publishScore(const std_msgs::Header& header, const posefusion::BlurScore& blur) {
+  void publishScore(const std_msgs::Header& header, const pf::BlurScore& blur) {
     BlurScoreMsg message;
     message.header = header;
     message.score = blur.score;
@@ -97,8 +97,7 @@ class BlurGateNodelet : public ChainNodelet {
   }
 
   /// The stamp of the colour image names the frame from here on: depth takes it too.
-  void pass(const posefusion::RgbdFrame& frame, const ImageConstPtr& color,
-            const ImageConstPtr& depth) {
+  void pass(const pf::RgbdFrame& frame, const ImageConstPtr& color, const ImageConstPtr& depth) {
     const std_msgs::Header& header = color->header;
     const bool same_color = frame.color.data == color->data.data();
     const bool same_depth =
@@ -121,13 +120,13 @@ class BlurGateNodelet : public ChainNodelet {
     sets_since_look_ = false;
   }
 
-  posefusion::BlurConfig config_;
+  pf::BlurConfig config_;
   std::string rectified_;
   bool require_same_frame_ = true;
   double missing_after_s_ = 5.0;
   bool sets_since_look_ = false;
-  posefusion::Rectifier rectifier_;
-  std::unique_ptr<posefusion::BlurGate> gate_;
+  pf::Rectifier rectifier_;
+  std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;
   ros::Subscriber color_, depth_, info_;

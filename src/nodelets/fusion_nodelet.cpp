@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "posefusion/mapper.hpp"
+#include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
@@ -17,8 +17,8 @@
 
 namespace posefusion_ros {
 
-using posefusion::FrameOutcome;
-using posefusion::FrameStatus;
+using pf::FrameOutcome;
+using pf::FrameStatus;
 using sensor_msgs::CameraInfo;
 using sensor_msgs::Image;
 using std_srvs::Trigger;
@@ -46,12 +46,12 @@ class FusionNodelet : public ChainNodelet {
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
-    const posefusion::Config config = parameters.config({"tracking", "map"});
+    const pf::Config config = parameters.config({"frame", "tracking", "map"});
     const PoseOutputSettings poses = readPoseOutput(parameters);
     map_frame_ = poses.map_frame;
     const bool lossless = parameters.flag("lossless", false);
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
-    mapper_ = std::make_unique<posefusion::Mapper>(config);
+    mapper_ = std::make_unique<pf::Mapper>(config);
     saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
@@ -111,7 +111,7 @@ class FusionNodelet : public ChainNodelet {
   void fuse(const Matcher::Set& set) {
     const auto& [info, color, depth, mask] = set;
     if (color->header.stamp < last_) startAnew();
-    const posefusion::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
     const FrameStatus status =
         mapper_->process(frame, cv::countNonZero(people) > 0 ? people : cv::Mat());
@@ -179,8 +179,8 @@ class FusionNodelet : public ChainNodelet {
 
   std::string map_frame_;
   std::unique_ptr<MapSaver> saver_;
-  std::unique_ptr<posefusion::Mapper> mapper_;
-  posefusion::Trajectory trajectory_;
+  std::unique_ptr<pf::Mapper> mapper_;
+  pf::Trajectory trajectory_;
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;

@@ -65,9 +65,9 @@ class PoseDetectorNodelet : public ChainNodelet {
   /// In the worker, before the first frame.
   void load() {
     try {
-      posefusion::RecordedPeople recorded;
+      pf::RecordedPeople recorded;
       if (config_.detector == "recorded") recorded = recordedPeople();
-      detector_ = posefusion::makePoseDetector(config_, std::move(recorded));
+      detector_ = pf::makePoseDetector(config_, std::move(recorded));
       NODELET_INFO("pose detector ready (%s)", config_.detector.c_str());
     } catch (const std::exception& error) {
       no_detector_ = error.what();
@@ -76,18 +76,18 @@ class PoseDetectorNodelet : public ChainNodelet {
                            : "No frame is used (~without_people_if_no_detector: true goes on).");
       if (go_on_) {
         config_.detector = "none";
-        detector_ = posefusion::makePoseDetector(config_, {});
+        detector_ = pf::makePoseDetector(config_, {});
       }
     }
   }
 
   /// Of people.json, or of a bag or TUM folder.
-  posefusion::RecordedPeople recordedPeople() const {
+  pf::RecordedPeople recordedPeople() const {
     const std::string json = ".json";
     const bool is_json =
         people_file_.size() > json.size() &&
         people_file_.compare(people_file_.size() - json.size(), json.size(), json) == 0;
-    return is_json ? posefusion::loadPeople(people_file_) : openInput(people_file_)->people();
+    return is_json ? pf::loadPeople(people_file_) : openInput(people_file_)->people();
   }
 
   void onInfo(const sensor_msgs::CameraInfoConstPtr& info) { matcher_->add<0>(info); }
@@ -107,8 +107,8 @@ class PoseDetectorNodelet : public ChainNodelet {
       reject(color->header, TrackingStatusMsg::NO_DETECTOR, no_detector_);
       return;
     }
-    const posefusion::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
-    posefusion::People people;
+    const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    pf::People people;
     people.stamp_ns = frame.stamp_ns;
     const bool newer_waits = worker_->waiting() > 0;
     if (lossless_ || !newer_waits || config_.detector != "network")
@@ -121,12 +121,12 @@ class PoseDetectorNodelet : public ChainNodelet {
     people_.publish(boost::make_shared<const PeopleMsg>(toMessage(people, color->header)));
   }
 
-  posefusion::PoseConfig config_;
+  pf::PoseConfig config_;
   bool lossless_ = false;
   bool go_on_ = false;
   std::string people_file_;
   std::string no_detector_;  // why there is none
-  std::unique_ptr<posefusion::PoseDetector> detector_;
+  std::unique_ptr<pf::PoseDetector> detector_;
   std::mutex publisher_mutex_;  // guards people_, which is advertised late
   ros::Publisher people_;
   std::unique_ptr<Matcher> matcher_;

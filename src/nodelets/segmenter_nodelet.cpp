@@ -5,7 +5,7 @@
 #include <boost/make_shared.hpp>
 #include <memory>
 
-#include "posefusion/io/people_picture.hpp"
+#include "posefusion/run/people_picture.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion_ros/background.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
@@ -38,8 +38,8 @@ class SegmenterNodelet : public ChainNodelet {
 
   void start() override {
     Parameters parameters(getPrivateNodeHandle());
-    segmenter_ = std::make_unique<posefusion::PeopleSegmenter>(
-        parameters.config({"segmentation"}).segmentation);
+    segmenter_ =
+        std::make_unique<pf::PeopleSegmenter>(parameters.config({"segmentation"}).segmentation);
     lossless_ = parameters.flag("lossless", false);
     up_frame_ = plainFrame(parameters.text("up_frame", ""));
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
@@ -98,9 +98,9 @@ class SegmenterNodelet : public ChainNodelet {
     }
     const ModelViewMsg::ConstPtr view = viewFor(header.stamp);
     if (background_.stopped()) return;
-    const posefusion::ModelView model = view ? fromMessage(view) : posefusion::ModelView();
-    const posefusion::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
-    const posefusion::Segmentation result = segmenter_->segment(
+    const pf::ModelView model = view ? fromMessage(view) : pf::ModelView();
+    const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    const pf::Segmentation result = segmenter_->segment(
         frame, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
     publish(frame, result, depth, header);
@@ -130,7 +130,7 @@ class SegmenterNodelet : public ChainNodelet {
     return T->linear() * Eigen::Vector3d::UnitZ();
   }
 
-  void publish(const posefusion::RgbdFrame& frame, const posefusion::Segmentation& result,
+  void publish(const pf::RgbdFrame& frame, const pf::Segmentation& result,
                const sensor_msgs::ImageConstPtr& depth, const std_msgs::Header& header) {
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (!mask_publisher_) {
@@ -143,7 +143,7 @@ class SegmenterNodelet : public ChainNodelet {
     }
     if (picture_publisher_.getNumSubscribers() > 0) {
       picture_publisher_.publish(
-          toImage(posefusion::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
+          toImage(pf::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
     }
     const bool nobody = result.static_depth.data == frame.depth.data;
     depth_publisher_.publish(
@@ -157,7 +157,7 @@ class SegmenterNodelet : public ChainNodelet {
   bool lossless_ = false;
   std::string up_frame_;
   std::unique_ptr<TransformLookup> lookup_;
-  std::unique_ptr<posefusion::PeopleSegmenter> segmenter_;
+  std::unique_ptr<pf::PeopleSegmenter> segmenter_;
   ros::Time last_;  // the frame before; zero at the start
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late

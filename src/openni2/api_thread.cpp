@@ -10,7 +10,7 @@
 #include <system_error>
 #include <vector>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr std::size_t kStackBytes = 2 << 20;
@@ -81,4 +81,4 @@ ApiThread::~ApiThread() {
   stackPool().giveBack(running_->stack);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
@@ -71,4 +71,4 @@ void ClockMap::follow(std::int64_t device_us, std::int64_t observed_ns) {
   offset_ns_ = std::min(offset_ns_, observed_ns);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

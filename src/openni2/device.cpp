@@ -16,7 +16,7 @@
 #include "status.hpp"
 #include "stream.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 /// Closes what it opened.
@@ -209,4 +209,4 @@ std::string Device::recordingPath() const {
   return impl_->recording ? impl_->recording->path() : "";
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

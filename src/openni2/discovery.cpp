@@ -8,7 +8,7 @@
 #include "posefusion_openni2/usb_access.hpp"
 #include "status.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 std::string listed(const std::vector<DeviceDescription>& devices) {
@@ -90,4 +90,4 @@ std::string findUri(const std::string& device) {
   return findSerial(device, devices);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 bool ExposureControl::set(int property, int value) const {
   return color_.setProperty(property, &value, sizeof value) == openni::STATUS_OK;
@@ -58,4 +58,4 @@ bool ExposureControl::limit() {
          set(ONI_STREAM_PROPERTY_EXPOSURE, settings_.max_exposure);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -9,7 +9,7 @@
 
 #include "posefusion_openni2/settings.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The exposure of the colour stream. OpenNI2 has no property for the longest exposure that the
 /// automatic may choose: where the device tells its exposure, this class watches it and holds it at
@@ -32,4 +32,4 @@ class ExposureControl {
   ExposureSettings settings_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -3,7 +3,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 std::string nameOf(openni::PixelFormat format) {
@@ -62,4 +62,4 @@ openni::VideoMode chooseMode(const openni::SensorInfo& sensor, StreamKind kind,
                    offersOf(sensor));
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

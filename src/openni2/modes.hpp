@@ -6,7 +6,7 @@
 #include "posefusion_openni2/frame.hpp"
 #include "posefusion_openni2/settings.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The pixels that are published as they are: R G B bytes, depth in millimetres.
 openni::PixelFormat formatOf(StreamKind kind);
@@ -18,4 +18,4 @@ std::string offersOf(const openni::SensorInfo& sensor);
 openni::VideoMode chooseMode(const openni::SensorInfo& sensor, StreamKind kind,
                              const StreamMode& wanted);
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -14,7 +14,7 @@
 #include "posefusion/core/error.hpp"
 #include "status.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr int kStreams = 2;
@@ -105,4 +105,4 @@ void Recording::finish() {
   }
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

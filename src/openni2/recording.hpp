@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Writes streams into an .oni file, by OpenNI2's own recorder and without loss. The file has a
 /// temporary name until the recording ends.
@@ -28,4 +28,4 @@ class Recording {
   openni::Recorder recorder_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

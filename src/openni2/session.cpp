@@ -7,7 +7,7 @@
 #include "posefusion/core/error.hpp"
 #include "status.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The started library, with the only listener for devices that go: each registration of one loses
 /// 64 bytes.
@@ -78,4 +78,4 @@ Session::~Session() {
 
 int Session::unplugCount(const std::string& uri) const { return library_->unplugCount(uri); }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

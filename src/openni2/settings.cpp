@@ -5,7 +5,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 std::string toText(const StreamMode& mode) {
   return std::to_string(mode.width) + "x" + std::to_string(mode.height) + "@" +
@@ -24,4 +24,4 @@ StreamMode parseMode(const std::string& text) {
   return mode;
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// What OpenNI2 says of the last error of this thread, on one line.
 std::string lastError();
@@ -13,4 +13,4 @@ std::string lastError();
 /// Throws InputError "<what>: <last error>" unless the status is OK.
 void check(openni::Status status, const std::string& what);
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -7,7 +7,7 @@
 #include "posefusion/core/error.hpp"
 #include "status.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 /// Device time that steps back by more is a file's next round or a restarted clock.
@@ -159,4 +159,4 @@ void SensorStream::take(const openni::VideoFrameRef& ref,
   sink_(frame);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -10,7 +10,7 @@
 #include "posefusion_openni2/api_thread.hpp"
 #include "posefusion_openni2/device.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// One stream of an open device: checks every frame and passes the good ones on.
 class SensorStream {
@@ -58,4 +58,4 @@ class SensorStream {
   std::unique_ptr<ApiThread> reader_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

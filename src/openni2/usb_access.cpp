@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,4 +60,4 @@ std::string missingUsbPermission(const std::string& sysfs_devices,
   return "";
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

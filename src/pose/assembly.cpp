@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
-constexpr float kMinAgreement = 0.05F;   // of the field with the limb's direction, per sample
+constexpr float kMinAgreement = 0.05F;     // of the field with the limb's direction, per sample
 constexpr float kMinAgreeingPart = 0.95F;  // of the samples
 
 /// Bilinear value, the border repeated.
@@ -134,9 +134,8 @@ Person toPerson(const Draft& draft, const ModelSettings& settings,
   for (std::size_t part = 0; part < settings.parts.size(); ++part) {
     if (settings.parts[part].joint < 0 || draft.peak_of_part[part] < 0) continue;
     const Peak& peak = peaks[part][draft.peak_of_part[part]];
-    person.joints[settings.parts[part].joint] = {(peak.x + 0.5F) * scale.x - 0.5F,
-                                                 (peak.y + 0.5F) * scale.y - 0.5F,
-                                                 std::min(peak.p, 1.0F)};
+    person.joints[settings.parts[part].joint] = {
+        (peak.x + 0.5F) * scale.x - 0.5F, (peak.y + 0.5F) * scale.y - 0.5F, std::min(peak.p, 1.0F)};
   }
   return person;
 }
@@ -180,8 +179,9 @@ std::vector<Person> assemblePeople(const PoseMaps& maps, const ModelSettings& se
   for (const NetworkLimb& limb : settings.limbs) {
     for (const Link& link : matchLimb(maps, limb, peaks)) assembler.add(limb, link);
   }
-  const cv::Point2f scale(static_cast<float>(image.width) / static_cast<float>(maps.size().width),
-                          static_cast<float>(image.height) / static_cast<float>(maps.size().height));
+  const cv::Point2f scale(
+      static_cast<float>(image.width) / static_cast<float>(maps.size().width),
+      static_cast<float>(image.height) / static_cast<float>(maps.size().height));
   std::vector<Person> people;
   for (const Draft& draft : assembler.drafts()) {
     if (draft.parts == 0) continue;
@@ -196,4 +196,4 @@ std::vector<Person> assemblePeople(const PoseMaps& maps, const ModelSettings& se
   return people;
 }
 
-}  // namespace posefusion
+}  // namespace pf

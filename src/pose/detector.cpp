@@ -7,7 +7,7 @@
 #include "posefusion/pose/network.hpp"
 #include "posefusion/pose/peaks.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr int kMaxPeaksPerPart = 40;
@@ -30,7 +30,8 @@ class RecordedDetector : public PoseDetector {
   RecordedPeople recorded_;
 };
 
-/// Looks at every n-th frame it is given, so that the result does not depend on the machine's speed.
+/// Looks at every n-th frame it is given, so that the result does not depend on the machine's
+/// speed.
 class NetworkDetector : public PoseDetector {
  public:
   explicit NetworkDetector(const PoseConfig& config)
@@ -67,4 +68,4 @@ std::unique_ptr<PoseDetector> makePoseDetector(const PoseConfig& config, Recorde
   return std::make_unique<NoDetector>();
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -9,7 +9,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ std::string defaultModelPath() {
   return (folder / "posefusion" / "models" / "tf_pose_mobilenet_v2_small.opencv.pb").string();
 }
 
-}  // namespace posefusion
+}  // namespace pf

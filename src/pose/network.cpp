@@ -9,7 +9,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,8 +79,7 @@ cv::Size PoseNetwork::inputSize(const cv::Size& image) const {
   const auto rounded = [step](double pixels) {
     return std::max(step, static_cast<int>(std::lround(pixels / step)) * step);
   };
-  const double width =
-      static_cast<double>(settings_.input_height_px) * image.width / image.height;
+  const double width = static_cast<double>(settings_.input_height_px) * image.width / image.height;
   return {rounded(width), rounded(settings_.input_height_px)};
 }
 
@@ -110,4 +109,4 @@ void PoseNetwork::checkChannels(const cv::Mat& blob) const {
                    " channels, its settings expect at least " + std::to_string(needed));
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // Half of OpenPose's enlargement (to the network's input): the centroid hides the difference.
@@ -32,8 +32,8 @@ bool isPeak(const cv::Mat& map, int x, int y) {
 
 Peak centroid(const cv::Mat& map, int x, int y) {
   double sum = 0, sum_x = 0, sum_y = 0;
-  for (int yy = std::max(0, y - kCentroidRadius);
-       yy <= std::min(map.rows - 1, y + kCentroidRadius); ++yy) {
+  for (int yy = std::max(0, y - kCentroidRadius); yy <= std::min(map.rows - 1, y + kCentroidRadius);
+       ++yy) {
     for (int xx = std::max(0, x - kCentroidRadius);
          xx <= std::min(map.cols - 1, x + kCentroidRadius); ++xx) {
       const double weight = std::max(0.0F, map.at<float>(yy, xx));
@@ -65,4 +65,4 @@ void PeakFinder::find(const cv::Mat& heat_map, float min_peak, int max_peaks,
   if (static_cast<int>(peaks.size()) > max_peaks) peaks.resize(max_peaks);
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -14,12 +14,12 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
+using pf::InputError;
 using sensor_msgs::CompressedImage;
 using sensor_msgs::Image;
 
 cv::Mat decodeColorMessage(const CompressedImage& message) {
-  cv::Mat pixels = posefusion::decodeColor(message.data.data(), message.data.size());
+  cv::Mat pixels = pf::decodeColor(message.data.data(), message.data.size());
   if (pixels.empty()) {
     throw InputError("a compressed colour image ('" + message.format + "') is not a whole image");
   }
@@ -57,7 +57,7 @@ cv::Mat decodeDepthMessage(const CompressedImage& message) {
   }
   if (message.data.size() <= offset) throw InputError("a compressed depth image has no pixels");
   const cv::Mat stored =
-      posefusion::decodeDepth(message.data.data() + offset, message.data.size() - offset);
+      pf::decodeDepth(message.data.data() + offset, message.data.size() - offset);
   if (stored.empty() || stored.type() != CV_16UC1) {
     throw InputError("a compressed depth image ('" + message.format +
                      "') is not a whole 16-bit PNG");

@@ -13,6 +13,7 @@
 #include "bag_images.hpp"
 #include "bag_topics.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/camera_file.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "stamp_pairer.hpp"
@@ -20,8 +21,8 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
-using posefusion::SourceFrame;
+using pf::InputError;
+using pf::SourceFrame;
 
 /// Runs `read`, and turns what rosbag throws into an InputError that names the bag.
 template <typename Read>
@@ -53,7 +54,7 @@ struct Stream {
   }
 };
 
-class BagSource : public posefusion::FrameSource {
+class BagSource : public pf::FrameSource {
  public:
   BagSource(const std::string& path, const InputOptions& options)
       : path_(path),
@@ -65,7 +66,7 @@ class BagSource : public posefusion::FrameSource {
       frame_count_ = colors.size();
       if (frame_count_ == 0) throw InputError("topic " + topics_.color + " has no message");
       camera_ = options.camera_file.empty() ? recordedCamera()
-                                            : posefusion::loadCamera(options.camera_file).camera;
+                                            : pf::loadCamera(options.camera_file).camera;
       view_.addQuery(bag_, rosbag::TopicQuery({topics_.color, topics_.depth}));
       position_ = view_.begin();
     });
@@ -87,20 +88,20 @@ class BagSource : public posefusion::FrameSource {
     }
   }
 
-  posefusion::RecordedPeople people() override {
-    posefusion::RecordedPeople recorded;
+  pf::RecordedPeople people() override {
+    pf::RecordedPeople recorded;
     forEach<PeopleMsg>(topics_.people, [&](const PeopleMsg& message) {
       recorded[toNs(message.header.stamp)] = fromMessage(message);
     });
     return recorded;
   }
 
-  posefusion::Trajectory truth() override {
-    posefusion::Trajectory truth;
+  pf::Trajectory truth() override {
+    pf::Trajectory truth;
     forEach<geometry_msgs::PoseStamped>(topics_.truth, [&](const auto& message) {
       const auto& p = message.pose.position;
       const auto& q = message.pose.orientation;
-      posefusion::StampedPose pose;
+      pf::StampedPose pose;
       pose.stamp_ns = toNs(message.header.stamp);
       pose.T_world_camera.translation() = Eigen::Vector3d(p.x, p.y, p.z);
       pose.T_world_camera.linear() =
@@ -112,8 +113,8 @@ class BagSource : public posefusion::FrameSource {
     return truth;
   }
 
-  posefusion::InputReport report() const override {
-    posefusion::InputReport report;
+  pf::InputReport report() const override {
+    pf::InputReport report;
     report.color_without_depth = pairer_.unpairedFirst();
     report.depth_without_color = pairer_.unpairedSecond();
     if (depth_.going_back > 0) {
@@ -124,7 +125,7 @@ class BagSource : public posefusion::FrameSource {
   }
 
  private:
-  posefusion::PinholeCamera recordedCamera() {
+  pf::PinholeCamera recordedCamera() {
     if (topics_.camera_info.empty()) {
       throw InputError("there is no camera_info for " + topics_.color +
                        ", expected a topic beside it, or a camera file (--camera)");
@@ -155,8 +156,8 @@ class BagSource : public posefusion::FrameSource {
     }
     if (!is_color) return std::nullopt;
     SourceFrame out = emptyFrame(image->stamp_ns);
-    out.defect = "stamp " + posefusion::formatStamp(image->stamp_ns) + " is not later than " +
-                 posefusion::formatStamp(latest_ns) + " before it";
+    out.defect = "stamp " + pf::formatStamp(image->stamp_ns) + " is not later than " +
+                 pf::formatStamp(latest_ns) + " before it";
     return out;
   }
 
@@ -172,12 +173,12 @@ class BagSource : public posefusion::FrameSource {
     try {
       out.frame.color = color.decode();
       out.frame.depth = depth.decode();
-      out.defect = posefusion::defectOf(out.frame);
+      out.defect = pf::defectOf(out.frame);
     } catch (const std::exception& error) {
       out.defect = error.what();
     }
     if (out.defect.empty()) return out;
-    out.defect = "frame " + posefusion::formatStamp(color.stamp_ns) + ": " + out.defect;
+    out.defect = "frame " + pf::formatStamp(color.stamp_ns) + ": " + out.defect;
     out.frame.color.release();
     out.frame.depth.release();
     return out;
@@ -201,25 +202,23 @@ class BagSource : public posefusion::FrameSource {
   rosbag::View::iterator position_;
   StampPairer<BagImage> pairer_;
   Stream color_, depth_;
-  posefusion::PinholeCamera camera_;
+  pf::PinholeCamera camera_;
   std::size_t frame_count_ = 0;
   bool finished_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<posefusion::FrameSource> openBag(const std::string& path,
-                                                 const InputOptions& options) {
+std::unique_ptr<pf::FrameSource> openBag(const std::string& path, const InputOptions& options) {
   return std::make_unique<BagSource>(path, options);
 }
 
-std::unique_ptr<posefusion::FrameSource> openInput(const std::string& path,
-                                                   const InputOptions& options) {
+std::unique_ptr<pf::FrameSource> openInput(const std::string& path, const InputOptions& options) {
   if (!std::filesystem::exists(path)) {
     throw InputError(path + ": does not exist, expected a TUM folder or a bag");
   }
   if (std::filesystem::is_directory(path)) {
-    return posefusion::openTumFolder(path, options.camera_file);
+    return pf::openTumFolder(path, options.camera_file);
   }
   return openBag(path, options);
 }

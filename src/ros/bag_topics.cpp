@@ -11,7 +11,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
+using pf::InputError;
 using Names = std::vector<std::string>;
 
 const Names kImageTypes = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};

@@ -11,7 +11,7 @@
 namespace posefusion_ros {
 
 namespace enc = sensor_msgs::image_encodings;
-using posefusion::InputError;
+using pf::InputError;
 
 namespace {
 
@@ -26,8 +26,7 @@ cv::Mat share(const sensor_msgs::ImageConstPtr& image) {
 }
 
 /// Focal lengths and centre from K or P, in pixels of the full sensor.
-void setIntrinsics(const sensor_msgs::CameraInfo& info, bool rectified,
-                   posefusion::PinholeCamera& camera) {
+void setIntrinsics(const sensor_msgs::CameraInfo& info, bool rectified, pf::PinholeCamera& camera) {
   const bool projection = rectified && info.P[0] > 0;
   camera.fx = projection ? info.P[0] : info.K[0];
   camera.cx = projection ? info.P[2] : info.K[2];
@@ -35,7 +34,7 @@ void setIntrinsics(const sensor_msgs::CameraInfo& info, bool rectified,
   camera.cy = projection ? info.P[6] : info.K[5];
 }
 
-void setDistortion(const sensor_msgs::CameraInfo& info, posefusion::PinholeCamera& camera) {
+void setDistortion(const sensor_msgs::CameraInfo& info, pf::PinholeCamera& camera) {
   const auto is_used = [](double d) { return d != 0.0; };
   if (std::none_of(info.D.begin(), info.D.end(), is_used)) return;
   const std::size_t known = camera.distortion.size();
@@ -82,8 +81,8 @@ cv::Mat toDepth(const sensor_msgs::ImageConstPtr& image) {
                    "', expected 16UC1 (millimetres) or 32FC1 (metres)");
 }
 
-posefusion::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified) {
-  posefusion::PinholeCamera camera;
+pf::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified) {
+  pf::PinholeCamera camera;
   setIntrinsics(info, rectified, camera);
   const int bin_x = std::max(1, static_cast<int>(info.binning_x));
   const int bin_y = std::max(1, static_cast<int>(info.binning_y));
@@ -96,14 +95,14 @@ posefusion::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rec
   camera.cy = (camera.cy - info.roi.y_offset) / bin_y;
   if (!rectified) setDistortion(info, camera);
   try {
-    posefusion::validate(camera);
+    pf::validate(camera);
   } catch (const InputError& error) {
     throw InputError(std::string("camera_info: ") + error.what());
   }
   return camera;
 }
 
-sensor_msgs::CameraInfo toCameraInfo(const posefusion::PinholeCamera& camera,
+sensor_msgs::CameraInfo toCameraInfo(const pf::PinholeCamera& camera,
                                      const std_msgs::Header& header) {
   sensor_msgs::CameraInfo info;
   info.header = header;
@@ -117,15 +116,14 @@ sensor_msgs::CameraInfo toCameraInfo(const posefusion::PinholeCamera& camera,
   return info;
 }
 
-posefusion::RgbdFrame toFrame(const sensor_msgs::ImageConstPtr& color,
-                              const sensor_msgs::ImageConstPtr& depth,
-                              const posefusion::PinholeCamera& camera) {
-  posefusion::RgbdFrame frame;
+pf::RgbdFrame toFrame(const sensor_msgs::ImageConstPtr& color,
+                      const sensor_msgs::ImageConstPtr& depth, const pf::PinholeCamera& camera) {
+  pf::RgbdFrame frame;
   frame.stamp_ns = toNs(color->header.stamp);
   frame.color = toColor(color);
   frame.depth = toDepth(depth);
   frame.camera = camera;
-  const std::string defect = posefusion::defectOf(frame);
+  const std::string defect = pf::defectOf(frame);
   if (!defect.empty()) throw InputError(defect);
   return frame;
 }
@@ -135,8 +133,7 @@ sensor_msgs::ImagePtr toImage(const cv::Mat& pixels, const std::string& encoding
   return cv_bridge::CvImage(header, encoding, pixels).toImageMsg();
 }
 
-sensor_msgs::ImagePtr toDepthImage(const posefusion::RgbdFrame& frame,
-                                   const std_msgs::Header& header) {
+sensor_msgs::ImagePtr toDepthImage(const pf::RgbdFrame& frame, const std_msgs::Header& header) {
   if (frame.depth.type() == CV_32FC1) return toImage(frame.depth, enc::TYPE_32FC1, header);
   if (frame.depth_unit_m == 1e-3) return toImage(frame.depth, enc::TYPE_16UC1, header);
   // Multiplied as depthInMetres() does it, so that a replay sees the same numbers.
@@ -150,15 +147,15 @@ sensor_msgs::ImagePtr toDepthImage(const posefusion::RgbdFrame& frame,
   return toImage(metres, enc::TYPE_32FC1, header);
 }
 
-PeopleMsg toMessage(const posefusion::People& people, const std_msgs::Header& header) {
+PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header) {
   PeopleMsg message;
   message.header = header;
   message.detected = static_cast<unsigned char>(people.detected);
   message.people.resize(people.people.size());
   for (std::size_t i = 0; i < people.people.size(); ++i) {
-    const posefusion::Person& from = people.people[i];
+    const pf::Person& from = people.people[i];
     message.people[i].score = from.score;
-    for (int j = 0; j < posefusion::kJointCount; ++j) {
+    for (int j = 0; j < pf::kJointCount; ++j) {
       KeypointMsg& joint = message.people[i].joints[j];
       joint.u = from.joints[j].u;
       joint.v = from.joints[j].v;
@@ -168,14 +165,14 @@ PeopleMsg toMessage(const posefusion::People& people, const std_msgs::Header& he
   return message;
 }
 
-posefusion::People fromMessage(const PeopleMsg& message) {
-  posefusion::People people;
+pf::People fromMessage(const PeopleMsg& message) {
+  pf::People people;
   people.stamp_ns = toNs(message.header.stamp);
   people.detected = message.detected != 0;
   people.people.resize(message.people.size());
   for (std::size_t i = 0; i < message.people.size(); ++i) {
     people.people[i].score = message.people[i].score;
-    for (int j = 0; j < posefusion::kJointCount; ++j) {
+    for (int j = 0; j < pf::kJointCount; ++j) {
       const KeypointMsg& from = message.people[i].joints[j];
       people.people[i].joints[j] = {from.u, from.v, from.p};
     }
@@ -183,7 +180,7 @@ posefusion::People fromMessage(const PeopleMsg& message) {
   return people;
 }
 
-TrackingStatusMsg toMessage(const posefusion::FrameStatus& status, const std_msgs::Header& header,
+TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera) {
   TrackingStatusMsg message;
   message.header = header;
@@ -191,7 +188,7 @@ TrackingStatusMsg toMessage(const posefusion::FrameStatus& status, const std_msg
   message.state = static_cast<std::uint8_t>(status.state);
   message.reason = reasonOf(status);
   message.pose = toPose(T_map_camera);
-  const posefusion::TrackingResult& tracking = status.tracking;
+  const pf::TrackingResult& tracking = status.tracking;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance.data()) =
       tracking.covariance;
   message.candidates = static_cast<std::uint32_t>(std::max(0, tracking.candidates));

@@ -18,7 +18,7 @@ MapOutput::MapOutput(ros::NodeHandle& handle, Parameters& parameters, const std:
       // Latched: the segmenter may connect after the first frame.
       view_publisher_(handle.advertise<ModelViewMsg>(topics::kModelView, 1, true)) {}
 
-void MapOutput::publishSurfels(const posefusion::SurfelMap& map, const ros::Time& stamp,
+void MapOutput::publishSurfels(const pf::SurfelMap& map, const ros::Time& stamp,
                                const std::optional<Eigen::Isometry3d>& T_map_start) {
   if (!T_map_start || surfel_publisher_.getNumSubscribers() == 0) return;
   if (!surfels_sent_.isZero() && (stamp - surfels_sent_).toSec() < surfels_period_s_) return;
@@ -29,7 +29,7 @@ void MapOutput::publishSurfels(const posefusion::SurfelMap& map, const ros::Time
   surfel_publisher_.publish(sensor_msgs::PointCloud2::ConstPtr(cloud));
 }
 
-void MapOutput::publishView(const posefusion::ModelView& view, const ros::Time& stamp, bool reset) {
+void MapOutput::publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset) {
   std_msgs::Header header;
   header.stamp = stamp;
   const ModelViewMsg::Ptr message = toMessage(view, header);

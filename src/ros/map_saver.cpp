@@ -5,18 +5,18 @@
 
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 
 namespace posefusion_ros {
 namespace {
 
-std::string saveInto(const std::filesystem::path& folder, const posefusion::SurfelMap& map,
-                     const posefusion::Trajectory& trajectory) {
+std::string saveInto(const std::filesystem::path& folder, const pf::SurfelMap& map,
+                     const pf::Trajectory& trajectory) {
   if (trajectory.empty()) return "nothing to save: no frame was fused";
-  posefusion::makeFolder(folder.string());
-  posefusion::saveTrajectory(
-      (folder / "trajectory.txt").string(), trajectory,
-      "pose of the camera (optical frame: z forward, x right, y down) in the map");
-  const std::size_t surfels = posefusion::saveMap((folder / "map.ply").string(), map);
+  pf::makeFolder(folder.string());
+  pf::saveTrajectory((folder / "trajectory.txt").string(), trajectory,
+                     "pose of the camera (optical frame: z forward, x right, y down) in the map");
+  const std::size_t surfels = pf::saveMap((folder / "map.ply").string(), map);
   return "saved map.ply (" + std::to_string(surfels) + " surfels) and trajectory.txt (" +
          std::to_string(trajectory.size()) + " poses) in " +
          std::filesystem::absolute(folder).string();
@@ -27,13 +27,11 @@ std::string saveInto(const std::filesystem::path& folder, const posefusion::Surf
 MapSaver::MapSaver(const std::string& folder)
     : folder_(folder.empty() ? "posefusion_output" : folder), is_on_(!folder.empty()) {}
 
-std::string MapSaver::save(const posefusion::SurfelMap& map,
-                           const posefusion::Trajectory& trajectory) {
+std::string MapSaver::save(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
   return saveInto(folder_, map, trajectory);
 }
 
-std::string MapSaver::tryToSave(const posefusion::SurfelMap& map,
-                                const posefusion::Trajectory& trajectory) {
+std::string MapSaver::tryToSave(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
   try {
     return save(map, trajectory);
   } catch (const std::exception& error) {
@@ -41,8 +39,7 @@ std::string MapSaver::tryToSave(const posefusion::SurfelMap& map,
   }
 }
 
-std::string MapSaver::saveBeforeReset(const posefusion::SurfelMap& map,
-                                      const posefusion::Trajectory& trajectory) {
+std::string MapSaver::saveBeforeReset(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
   return saveInto(std::filesystem::path(folder_) / ("before_reset_" + std::to_string(++resets_)),
                   map, trajectory);
 }

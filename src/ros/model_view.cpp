@@ -26,15 +26,14 @@ cv::Mat planeOf(const sensor_msgs::Image& image, const ModelViewMsg::ConstPtr& o
   try {
     if (image.encoding == encoding) return cv_bridge::toCvShare(image, owner)->image;
   } catch (const cv_bridge::Exception& error) {
-    throw posefusion::InputError(std::string("model view: ") + error.what());
+    throw pf::InputError(std::string("model view: ") + error.what());
   }
-  throw posefusion::InputError("model view: encoding '" + image.encoding + "', expected " +
-                               encoding);
+  throw pf::InputError("model view: encoding '" + image.encoding + "', expected " + encoding);
 }
 
 }  // namespace
 
-ModelViewMsg::Ptr toMessage(const posefusion::ModelView& view, const std_msgs::Header& header) {
+ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& header) {
   auto message = boost::make_shared<ModelViewMsg>();
   message->header = header;
   if (view.empty()) return message;
@@ -49,8 +48,8 @@ ModelViewMsg::Ptr toMessage(const posefusion::ModelView& view, const std_msgs::H
   return message;
 }
 
-posefusion::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
-  posefusion::ModelView view;
+pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
+  pf::ModelView view;
   if (message->depth.data.empty()) return view;
   view.camera = toCamera(message->camera, false);
   view.T_map_camera.matrix().topRows<3>() =

@@ -56,7 +56,7 @@ Parameters::Parameters(XmlRpc::XmlRpcValue values, std::string origin)
 }
 
 void Parameters::fail(const std::string& name, const std::string& what) const {
-  throw posefusion::InputError("parameter " + origin_ + "/" + name + " " + what);
+  throw pf::InputError("parameter " + origin_ + "/" + name + " " + what);
 }
 
 template <typename Value>
@@ -125,18 +125,18 @@ std::string Parameters::choice(const std::string& name, const std::string& fallb
   return value;
 }
 
-posefusion::Config Parameters::config(const std::vector<std::string>& groups) {
-  posefusion::Config config;
+pf::Config Parameters::config(const std::vector<std::string>& groups) {
+  pf::Config config;
   YAML::Node tree(YAML::NodeType::Map);
   for (const auto& entry : values_) {
     if (!entry.second.IsMap()) continue;
     tree[entry.first] = entry.second;
     known_.insert(entry.first.as<std::string>());
   }
-  posefusion::applyYaml(config, tree, "parameters of " + origin_);
+  pf::applyYaml(config, tree, "parameters of " + origin_);
   const std::string mode = text("mode", "");
-  if (!mode.empty()) posefusion::applyMode(config, mode);
-  for (const auto& [key, value] : posefusion::listFields(config)) {
+  if (!mode.empty()) pf::applyMode(config, mode);
+  for (const auto& [key, value] : pf::listFields(config)) {
     const std::string group = key.substr(0, key.find('.'));
     if (std::find(groups.begin(), groups.end(), group) != groups.end()) note(key, value);
   }

@@ -71,8 +71,7 @@ bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& 
   return true;
 }
 
-std::string PoseOutput::publish(const std_msgs::Header& image,
-                                const posefusion::FrameStatus& status) {
+std::string PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& status) {
   Links links;
   std::string error;
   if (!look(image, links, error)) return error;
@@ -109,23 +108,22 @@ void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
 }
 
 void PoseOutput::sendOdometry(const ros::Time& stamp, const std::string& base,
-                              const Eigen::Isometry3d& T_map_base,
-                              const posefusion::FrameStatus& status) {
+                              const Eigen::Isometry3d& T_map_base, const pf::FrameStatus& status) {
   nav_msgs::Odometry odometry;
   odometry.header.stamp = stamp;
   odometry.header.frame_id = settings_.map_frame;
   odometry.child_frame_id = base;
   odometry.pose.pose = toPose(T_map_base);
   // The tracker's covariance is in the camera's axes; ROS wants those of the map.
-  posefusion::Matrix6d rotation = posefusion::Matrix6d::Zero();
+  pf::Matrix6d rotation = pf::Matrix6d::Zero();
   const Eigen::Matrix3d R = (*T_map_start_ * status.T_map_camera).linear();
   rotation.topLeftCorner<3, 3>() = R;
   rotation.bottomRightCorner<3, 3>() = R;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
       rotation * status.tracking.covariance * rotation.transpose();
   if (T_map_base_before_ && stamp > before_) {
-    const posefusion::Vector6d twist =
-        posefusion::logSe3(T_map_base_before_->inverse() * T_map_base) / (stamp - before_).toSec();
+    const pf::Vector6d twist =
+        pf::logSe3(T_map_base_before_->inverse() * T_map_base) / (stamp - before_).toSec();
     odometry.twist.twist.linear =
         tf2::toMsg(Eigen::Vector3d(twist.head<3>()), odometry.twist.twist.linear);
     odometry.twist.twist.angular =

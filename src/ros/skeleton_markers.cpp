@@ -8,11 +8,11 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::Joint;
-using posefusion::Keypoint;
-using posefusion::People;
-using posefusion::Person;
-using posefusion::RgbdFrame;
+using pf::Joint;
+using pf::Keypoint;
+using pf::People;
+using pf::Person;
+using pf::RgbdFrame;
 
 constexpr double kLineWidthM = 0.03;
 constexpr std::array<std::array<int, 3>, 6> kColors = {
@@ -52,7 +52,7 @@ visualization_msgs::Marker markerOf(const Person& person, std::size_t index, con
   marker.color.g = static_cast<float>(colorOf(index)[1]) / 255.0F;
   marker.color.b = static_cast<float>(colorOf(index)[2]) / 255.0F;
   marker.color.a = 1;
-  for (const auto& [from, to] : posefusion::kSkeletonLines) {
+  for (const auto& [from, to] : pf::kSkeletonLines) {
     geometry_msgs::Point a, b;
     if (!lift(jointOf(person, from), frame, a) || !lift(jointOf(person, to), frame, b)) continue;
     marker.points.push_back(a);

@@ -42,10 +42,10 @@ void describe(sensor_msgs::PointCloud2& cloud) {
 
 }  // namespace
 
-sensor_msgs::PointCloud2::Ptr toCloud(const posefusion::SurfelMap& map,
+sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                                       const Eigen::Isometry3d& T_map_start,
                                       std::size_t max_points) {
-  const posefusion::SurfelArrays& s = map.surfels();
+  const pf::SurfelArrays& s = map.surfels();
   const std::size_t stable = map.stableCount();
   const std::size_t step = max_points > 0 ? (stable + max_points - 1) / max_points : 1;
   const Eigen::Isometry3f T = T_map_start.cast<float>();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// One pass of the kernel (1 2 1) / 4 along the axis with the given stride, the border repeated.
@@ -54,4 +54,4 @@ float logLikelihoodRatio(const ColourHistogram& inside, const ColourHistogram& o
   return std::clamp(ratio, -limit, limit);
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// Difference of depth that noise, the map's error and the pose's explain, metres: the noise of
@@ -61,20 +61,17 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
                       const Eigen::Isometry3d& T_view_camera, std::vector<Background>& result) {
   result.assign(grid.size(), Background::unknown);
   const PinholeCamera& camera = view.camera;
-  const Projection projection{T_view_camera.linear().cast<float>(),
-                              T_view_camera.translation().cast<float>(),
-                              static_cast<float>(camera.fx),
-                              static_cast<float>(camera.fy),
-                              static_cast<float>(camera.cx),
-                              static_cast<float>(camera.cy)};
-  const int reach_px = std::max(
-      1, static_cast<int>(std::lround(static_cast<double>(camera.width) / grid.cols)));
+  const Projection projection{
+      T_view_camera.linear().cast<float>(), T_view_camera.translation().cast<float>(),
+      static_cast<float>(camera.fx),        static_cast<float>(camera.fy),
+      static_cast<float>(camera.cx),        static_cast<float>(camera.cy)};
+  const int reach_px =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.width) / grid.cols)));
   parallelFor(grid.rows, 8, [&](std::size_t begin, std::size_t end) {
     const int last = static_cast<int>(end) * grid.cols;
     for (int cell = static_cast<int>(begin) * grid.cols; cell < last; ++cell) {
       if (!grid.hasDepth(cell)) continue;
-      result[cell] = judge(view, projection,
-                           {grid.x[cell], grid.y[cell], grid.z[cell]}, reach_px);
+      result[cell] = judge(view, projection, {grid.x[cell], grid.y[cell], grid.z[cell]}, reach_px);
     }
   });
 }
@@ -97,4 +94,4 @@ Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t s
   return T_view_camera;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr float kSampleSpacing_m = 0.07F;
@@ -144,9 +144,9 @@ struct SegmentDistance {
   }
   float squared(float x, float y, float z) const {
     const float dx = x - start.x(), dy = y - start.y(), dz = z - start.z();
-    const float t = std::clamp(
-        (dx * direction.x() + dy * direction.y() + dz * direction.z()) * inverse_length2, 0.0F,
-        1.0F);
+    const float t =
+        std::clamp((dx * direction.x() + dy * direction.y() + dz * direction.z()) * inverse_length2,
+                   0.0F, 1.0F);
     const float ex = dx - t * direction.x(), ey = dy - t * direction.y(),
                 ez = dz - t * direction.z();
     return ex * ex + ey * ey + ez * ez;
@@ -189,8 +189,8 @@ Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m)
   if (depth_m <= 0.0F) return body;
   for (const Limb& limb : kLimbs) {
     if (!limbIsSeen(person, limb)) continue;
-    sampleLimb(person.joints[static_cast<int>(limb.from)],
-               person.joints[static_cast<int>(limb.to)], depth_m, grid, samples);
+    sampleLimb(person.joints[static_cast<int>(limb.from)], person.joints[static_cast<int>(limb.to)],
+               depth_m, grid, samples);
   }
   std::vector<Sample> kept;
   for (const Sample& sample : samples) {
@@ -239,4 +239,4 @@ void measureDistance(const std::vector<Body>& bodies, const SceneGrid& grid, flo
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

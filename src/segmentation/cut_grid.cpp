@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 struct Neighbour {
@@ -15,7 +15,7 @@ struct Neighbour {
 constexpr std::array<Neighbour, 4> kNeighbours{
     {{1, 0, 1.0F}, {0, 1, 1.0F}, {1, 1, 0.707F}, {-1, 1, 0.707F}}};
 
-constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
+constexpr float kHoleEdge = 0.15F;       // part of the smoothness across missing depth
 constexpr float kColourSpread = 900.0F;  // square of a difference that makes an edge cheap
 
 float distanceBetween(const SceneGrid& grid, int a, int b) {
@@ -58,7 +58,8 @@ void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& 
         if (!inGraph(other)) outside += n.factor * weight(cell, other);
       }
     }
-    node_[cell] = graph_.addNode(std::max(0.0F, unary[cell]), std::max(0.0F, -unary[cell]) + outside);
+    node_[cell] =
+        graph_.addNode(std::max(0.0F, unary[cell]), std::max(0.0F, -unary[cell]) + outside);
   }
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (node_[cell] < 0) continue;
@@ -67,7 +68,8 @@ void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& 
       const int r = row + n.down, c = col + n.right;
       if (r >= grid.rows || c < 0 || c >= grid.cols) continue;
       const int other = r * grid.cols + c;
-      if (node_[other] >= 0) graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
+      if (node_[other] >= 0)
+        graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
     }
   }
   graph_.solve();
@@ -106,8 +108,7 @@ void GridCutter::cutPaper(const SceneGrid& grid, const std::vector<Body>& bodies
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (!grid.hasDepth(cell)) continue;
     const Eigen::Vector3f point(grid.x[cell], grid.y[cell], grid.z[cell]);
-    paper_unary_[cell] =
-        paperUnary(point, seeds, up, static_cast<float>(config.paper_radius_m));
+    paper_unary_[cell] = paperUnary(point, seeds, up, static_cast<float>(config.paper_radius_m));
   }
   for (int cell : seed_cells) paper_unary_[cell] = kCertain;
   const float sigma_m = static_cast<float>(config.paper_sigma_m);
@@ -119,7 +120,7 @@ void GridCutter::cutPaper(const SceneGrid& grid, const std::vector<Body>& bodies
 }
 
 void keepAnchoredRegions(const SceneGrid& grid, const std::vector<Body>& bodies,
-                          std::vector<std::uint8_t>& labels) {
+                         std::vector<std::uint8_t>& labels) {
   std::vector<int> open;
   std::vector<std::uint8_t> reached(labels.size(), 0);
   for (const Body& body : bodies) {
@@ -145,4 +146,4 @@ void keepAnchoredRegions(const SceneGrid& grid, const std::vector<Body>& bodies,
   labels.swap(reached);
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr float kColourLimit = 3.0F;
@@ -20,7 +20,8 @@ int candidateOf(const Evidence& evidence, int cell) {
 }
 
 /// The map's word on a cell, unless its candidate is known to be in the map by mistake.
-Background backgroundOf(const Evidence& evidence, const std::vector<PersonTrack>& tracks, int cell) {
+Background backgroundOf(const Evidence& evidence, const std::vector<PersonTrack>& tracks,
+                        int cell) {
   const Background background = evidence.background[cell];
   const int candidate = candidateOf(evidence, cell);
   if (candidate < 0) return background;
@@ -87,7 +88,8 @@ void improvedUnary(const SceneGrid& grid, const Evidence& evidence, const std::v
                    Unary& unary) {
   std::vector<int> bins(grid.size());
   for (int cell = 0; cell < grid.size(); ++cell) {
-    bins[cell] = ColourHistogram::binOf(grid.color.at<cv::Vec3b>(cell / grid.cols, cell % grid.cols));
+    bins[cell] =
+        ColourHistogram::binOf(grid.color.at<cv::Vec3b>(cell / grid.cols, cell % grid.cols));
   }
   const ColourHistogram outside = learnColours(grid, evidence, bins, tracks);
   unary.assign(grid.size(), -kCertain);
@@ -132,4 +134,4 @@ float smoothnessCost(float length_m, float sigma_m) {
   return std::exp(-relative * relative);
 }
 
-}  // namespace posefusion
+}  // namespace pf

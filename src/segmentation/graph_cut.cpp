@@ -6,7 +6,7 @@
 // Not self-contained: needs the two above.
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
-namespace posefusion {
+namespace pf {
 
 namespace {
 
@@ -46,4 +46,4 @@ void GraphCut::solve() { graph_->solver.maxFlow(); }
 
 bool GraphCut::isPerson(int node) const { return graph_->solver.inSourceSegment(node); }
 
-}  // namespace posefusion
+}  // namespace pf

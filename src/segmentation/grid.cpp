@@ -8,7 +8,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// The depth of a block: the valid pixel nearest to its centre. A mean would mix person and wall.
@@ -83,4 +83,4 @@ float medianDepth(const SceneGrid& grid, int cell, int radius) {
   return depths[count / 2];
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,14 +7,14 @@
 #include <numeric>
 #include <utility>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
-constexpr int kPatch = 8;                // cells along the side of a patch
-constexpr float kTolerance = 0.006F;     // of inverse depth, 1/m: 2.4 cm at 2 m
+constexpr int kPatch = 8;                 // cells along the side of a patch
+constexpr float kTolerance = 0.006F;      // of inverse depth, 1/m: 2.4 cm at 2 m
 constexpr float kMaxPatchError = 0.004F;  // rms of a patch's own fit, 1/m
 constexpr int kMinPatches = 12;
-constexpr double kMinArea_m2 = 0.35;     // as seen face on: more than a back
+constexpr double kMinArea_m2 = 0.35;  // as seen face on: more than a back
 
 /// Sums from which a plane is fitted to inverse depths at (u, v), least squares.
 struct Moments {
@@ -135,8 +135,8 @@ bool PlaneFinder::State::isLarge(const SceneGrid& grid) const {
   return area_m2 > kMinArea_m2;
 }
 
-/// Marks the cells of the plane in a patch and in the ring around it: the border patches of a region
-/// mix two surfaces and did not join.
+/// Marks the cells of the plane in a patch and in the ring around it: the border patches of a
+/// region mix two surfaces and did not join.
 void PlaneFinder::State::mark(const SceneGrid& grid, int index,
                               std::vector<std::uint8_t>& on_plane) const {
   const int u0 = std::max(0, (index % cols - 1) * kPatch);
@@ -166,4 +166,4 @@ void PlaneFinder::find(const SceneGrid& grid, std::vector<std::uint8_t>& on_plan
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

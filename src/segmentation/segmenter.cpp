@@ -9,7 +9,7 @@
 #include "posefusion/segmentation/planes.hpp"
 #include "posefusion/segmentation/upsample.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr double kMinDepth_m = 0.25;
@@ -19,7 +19,7 @@ constexpr float kSureScore = 0.55F;  // ... and this score is a person even if t
 constexpr double kInMapFrames = 10;  // ... for so long
 constexpr int kMinMaskCells = 12;
 constexpr float kMaxPriorSpread_m = 0.4F;  // in depth, of a carried mask around its person
-constexpr float kFading = 0.6F;      // of joints that are carried outside the mask
+constexpr float kFading = 0.6F;            // of joints that are carried outside the mask
 constexpr float kFaded = 0.08F;
 
 /// Carried joints that the mask does not hold have lost their person: they fade, then go.
@@ -91,8 +91,8 @@ std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const PersonTrack& track
   return cells;
 }
 
-/// Lifts every track into the scene; drops those that have no place there, and what only looks like a
-/// person and has long been part of the map.
+/// Lifts every track into the scene; drops those that have no place there, and what only looks like
+/// a person and has long been part of the map.
 void PeopleSegmenter::State::locate(const SegmentationConfig& config) {
   bodies.clear();
   std::size_t kept = 0;
@@ -105,11 +105,10 @@ void PeopleSegmenter::State::locate(const SegmentationConfig& config) {
     if (track.unseen > kInMapFrames) track.in_map = false;
     if (in_map && track.fresh && !track.in_map) continue;
     if (!track.in_map) {
-      body.seeds.erase(std::remove_if(body.seeds.begin(), body.seeds.end(),
-                                      [&](int cell) {
-                                        return evidence.background[cell] == Background::agrees;
-                                      }),
-                       body.seeds.end());
+      body.seeds.erase(
+          std::remove_if(body.seeds.begin(), body.seeds.end(),
+                         [&](int cell) { return evidence.background[cell] == Background::agrees; }),
+          body.seeds.end());
     }
     body.anchors = cellsBeforeMap(track);
     if (track.unseen > config.carry_frames) continue;
@@ -125,8 +124,7 @@ void PeopleSegmenter::State::locate(const SegmentationConfig& config) {
   evidence.prior.assign(grid.size(), -1);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     for (int cell : tracks[t].cells) {
-      if (grid.hasDepth(cell) &&
-          std::abs(grid.z[cell] - tracks[t].depth_m) > kMaxPriorSpread_m) {
+      if (grid.hasDepth(cell) && std::abs(grid.z[cell] - tracks[t].depth_m) > kMaxPriorSpread_m) {
         continue;
       }
       evidence.prior[cell] = static_cast<std::int16_t>(t);
@@ -208,4 +206,4 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const People& peop
 
 void PeopleSegmenter::reset() { state_ = std::make_unique<State>(); }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,12 +6,12 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
-constexpr int kFlowWidth = 320;         // pixels of the images that flow is measured on
+constexpr int kFlowWidth = 320;  // pixels of the images that flow is measured on
 constexpr int kPyramidLevels = 2;
-constexpr int kMaskSamples = 30;        // per person
+constexpr int kMaskSamples = 30;          // per person
 constexpr float kMaxDeviation_px = 6.0F;  // of a joint's flow from its person's, at kFlowWidth
 const cv::Size kWindow(13, 13);
 
@@ -168,4 +168,4 @@ void mergeDetections(const People& people, const SceneGrid& grid,
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr float kHoleOdds = 5.0F;
@@ -68,10 +68,10 @@ void upsampleMask(const RgbdFrame& frame, const cv::Mat& depth_m, const SceneGri
         const int kind = surroundings(grid, labels, row, col);
         for (int y = block.y; y < block.y + block.height; ++y) {
           for (int x = block.x; x < block.x + block.width; ++x) {
-            const bool person =
-                kind == 2 ? votePerson(grid, labels, {x, y}, depth_m.at<float>(y, x),
-                                       frame.color.at<cv::Vec3b>(y, x))
-                          : kind == 1;
+            const bool person = kind == 2
+                                    ? votePerson(grid, labels, {x, y}, depth_m.at<float>(y, x),
+                                                 frame.color.at<cv::Vec3b>(y, x))
+                                    : kind == 1;
             mask.at<std::uint8_t>(y, x) = person ? 255 : 0;
           }
         }
@@ -89,4 +89,4 @@ cv::Mat removeMasked(const cv::Mat& depth, const cv::Mat& mask, int margin_px) {
   return rest;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/actor.hpp"
+#include "simulator/actor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -184,4 +184,4 @@ void Actor::step(const std::vector<Vector2d>& others) {
   settleHeight();
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/avatar.hpp"
+#include "simulator/avatar.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -190,4 +190,4 @@ void Avatar::skinNormals(const Posture& posture, std::vector<Vector3f>& normals)
   });
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

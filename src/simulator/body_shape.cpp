@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/body_shape.hpp"
+#include "simulator/body_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 using Eigen::Vector3f;
 
@@ -151,4 +151,4 @@ std::vector<Blob> handBlobs(const Rig& rig, float side) {
   return blobs;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

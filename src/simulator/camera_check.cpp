@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/camera_check.hpp"
+#include "simulator/camera_check.hpp"
 
 #include <cmath>
 #include <cstdio>
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr double kStepS = 0.1;
@@ -55,4 +55,4 @@ void checkCamera(const CameraPath& path, const World& world, const RayCaster& ca
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

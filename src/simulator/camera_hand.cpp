@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/camera_path.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/camera_path.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -96,4 +96,4 @@ std::unique_ptr<CameraPath> makeHandHeld(const HandHeld& spec, std::uint32_t see
   return std::make_unique<HandHeldPath>(spec, seed);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

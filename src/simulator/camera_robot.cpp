@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/camera_path.hpp"
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/robot_plan.hpp"
+#include "simulator/camera_path.hpp"
+#include "simulator/random.hpp"
+#include "simulator/robot_plan.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -186,4 +186,4 @@ std::unique_ptr<CameraPath> makeRobot(const Robot& spec, double duration_s, std:
   return std::make_unique<RobotPath>(spec, duration_s, seed);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

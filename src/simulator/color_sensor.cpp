@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/color_sensor.hpp"
+#include "simulator/color_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/texture.hpp"
+#include "simulator/random.hpp"
+#include "simulator/texture.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr int kToneSteps = 4096;
@@ -120,4 +120,4 @@ void ColorSensor::expose(const cv::Mat& radiance, const Exposure& exposure, std:
   if (config_.jpeg_quality > 0) throughJpeg(config_.jpeg_quality, picture);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

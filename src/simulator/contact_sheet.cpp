@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/contact_sheet.hpp"
+#include "simulator/contact_sheet.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 /// Limbs of the COCO-18 skeleton.
@@ -97,4 +97,4 @@ cv::Mat drawFrame(const SimulatedFrame& frame, const Simulation& simulation, int
   return row;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/crowd.hpp"
+#include "simulator/crowd.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/actor.hpp"
+#include "simulator/actor.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -82,4 +82,4 @@ ActorState Crowd::at(std::size_t person, double time_s) const {
   return interpolate(track[i], track[i + 1], x - static_cast<double>(i));
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

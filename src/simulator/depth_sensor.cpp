@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/depth_sensor.hpp"
+#include "simulator/depth_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr double kSteepestRad = 1.53;
@@ -235,4 +235,4 @@ void senseDepth(const DepthView& view, const PinholeCamera& camera, const DepthC
   });
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

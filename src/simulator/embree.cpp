@@ -3,7 +3,7 @@
 
 #include <tbb/task_arena.h>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 RTCGeometry makeTriangles(RTCDevice device,
                           const std::vector<std::array<std::uint32_t, 3>>& triangles,
@@ -64,4 +64,4 @@ std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float marg
   return blocked;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

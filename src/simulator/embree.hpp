@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "posefusion/simulator/raycaster.hpp"
+#include "simulator/raycaster.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 struct ReleaseScene {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -34,4 +34,4 @@ void intersect(RTCScene scene, RayPacket& packet);
 /// Whether anything in the scene lies between the points, apart from `margin_m` at both ends.
 std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m);
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

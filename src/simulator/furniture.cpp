@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/furniture.hpp"
+#include "simulator/furniture.hpp"
 
 #include <functional>
 #include <map>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/furniture_parts.hpp"
+#include "simulator/furniture_parts.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -76,4 +76,4 @@ void addObject(World& world, const ObjectSpec& spec) {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables, chairs, sofas.
-#include "posefusion/simulator/furniture_parts.hpp"
+#include "simulator/furniture_parts.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 using Eigen::Vector3f;
 
@@ -87,4 +87,4 @@ void addSofa(const Part& p) {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

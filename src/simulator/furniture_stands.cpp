@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/furniture_parts.hpp"
+#include "simulator/furniture_parts.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 using Eigen::Vector3f;
 
@@ -177,4 +177,4 @@ void addRadiator(const Part& p) {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "posefusion/simulator/body_shape.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/body_shape.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -82,4 +82,4 @@ float HeadShape::hair(const Vector3f& at) const {
   return s * d;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/lighting.hpp"
+#include "simulator/lighting.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -165,4 +165,4 @@ void Lighting::smoothPatches(std::vector<Vector3f>& light) const {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

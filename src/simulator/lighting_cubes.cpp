@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/lighting.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/lighting.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -90,4 +90,4 @@ AmbientCube Lighting::cubeAt(const Vector3f& position) const {
   return result;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/lighting.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/lighting.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -141,4 +141,4 @@ Vector3f Lighting::ambient(const Vector3f& position, const Vector3f& normal) con
   return sum;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

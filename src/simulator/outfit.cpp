@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/outfit.hpp"
+#include "simulator/outfit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/random.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -212,4 +212,4 @@ float Appearance::infrared(const SurfacePoint& point) const {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/posed_people.hpp"
+#include "simulator/posed_people.hpp"
 
 #include <algorithm>
 
 #include "embree.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 struct PosedPeople::State {
   struct Person {
@@ -69,4 +69,4 @@ std::array<bool, 16> PosedPeople::block(const SightPacket& sight, float margin_m
   return blocks(state_->scene.get(), sight, margin_m);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

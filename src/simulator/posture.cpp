@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/posture.hpp"
+#include "simulator/posture.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/actor.hpp"
-#include "posefusion/simulator/random.hpp"
+#include "simulator/actor.hpp"
+#include "simulator/random.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::AngleAxisf;
@@ -247,4 +247,4 @@ std::array<Vector3f, kJointCount> jointsOf(const Rig& rig, const Posture& postur
   return joints;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/random.hpp"
+#include "simulator/random.hpp"
 
 #include <array>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr int kTableBits = 12;
@@ -71,4 +71,4 @@ float fractalNoise(float x, float y, std::uint32_t seed, int octaves, int period
   return sum;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/raycaster.hpp"
+#include "simulator/raycaster.hpp"
 
 #include <limits>
 #include <stdexcept>
 
 #include "embree.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 struct ReleaseDevice {
@@ -62,4 +62,4 @@ std::array<bool, 16> RayCaster::blocks(const SightPacket& sight, float margin_m)
 
 RTCDevice RayCaster::device() const { return state_->device.get(); }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/renderer.hpp"
+#include "simulator/renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -193,4 +193,4 @@ void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, const 
   });
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/rig.hpp"
+#include "simulator/rig.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 
 using Eigen::Vector3f;
 
@@ -60,4 +60,4 @@ Rig::Rig(const Build& b) : build(b) {
   joint(Joint::left_ear, {-0.005F, 0.078F, 1.63F});
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/robot_plan.hpp"
+#include "simulator/robot_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -96,4 +96,4 @@ std::vector<Piece> planRobot(const Robot& spec, double duration_s) {
   return Planner(spec, duration_s).plan();
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/furniture.hpp"
+#include "simulator/furniture.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -144,4 +144,4 @@ void addRoom(World& world, const RoomSpec& spec, std::uint32_t seed) {
   world.rooms.emplace_back(low.cast<double>(), (low + size).cast<double>());
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/scenario.hpp"
+#include "simulator/scenario.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <set>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/scenario_parts.hpp"
-#include "posefusion/simulator/scenario_texts.hpp"
+#include "simulator/scenario_parts.hpp"
+#include "simulator/scenario_texts.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr int kDeepestBase = 8;
@@ -164,4 +164,4 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   return s;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

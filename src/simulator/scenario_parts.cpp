@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/scenario_parts.hpp"
+#include "simulator/scenario_parts.hpp"
 
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -174,4 +174,4 @@ void readCamera(YamlMap map, Scenario& scenario) {
   map.finish();
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/scene_check.hpp"
+#include "simulator/scene_check.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/walkway.hpp"
+#include "simulator/walkway.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -73,4 +73,4 @@ void checkScene(const Scenario& scenario, const World& world) {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

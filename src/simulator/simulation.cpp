@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/simulation.hpp"
+#include "simulator/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
-#include "posefusion/simulator/camera_check.hpp"
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/scene_check.hpp"
-#include "posefusion/simulator/simulation_state.hpp"
+#include "simulator/camera_check.hpp"
+#include "simulator/random.hpp"
+#include "simulator/scene_check.hpp"
+#include "simulator/simulation_state.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
@@ -102,4 +102,4 @@ std::int64_t Simulation::stampOf(double time_s) const {
 const World& Simulation::world() const { return state_->world; }
 const Scenario& Simulation::scenario() const { return state_->scenario; }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/posture.hpp"
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/simulation_state.hpp"
-#include "posefusion/simulator/truth.hpp"
+#include "simulator/posture.hpp"
+#include "simulator/random.hpp"
+#include "simulator/simulation_state.hpp"
+#include "simulator/truth.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Isometry3d;
@@ -210,4 +210,4 @@ void Simulation::State::observePeople(const Moments& m, SimulatedFrame& out) con
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

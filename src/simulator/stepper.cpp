@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/simulator/actor.hpp"
+#include "simulator/actor.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -92,4 +92,4 @@ void Stepper::step(const Vector2d& at, double yaw, const Vector2d& velocity) {
   swing_[side] = {true, 0.0, feet_[side]};
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

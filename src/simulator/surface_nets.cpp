@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/simulator/body_shape.hpp"
+#include "simulator/body_shape.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -149,4 +149,4 @@ Polygonised polygonise(const Distance& distance, const Eigen::AlignedBox3f& box,
   return out;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

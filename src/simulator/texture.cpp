@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/texture.hpp"
+#include "simulator/texture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 float srgbToLinear(float s) {
@@ -96,4 +96,4 @@ cv::Mat paintTexture(const std::string& kind, std::uint32_t seed) {
   throw InputError("texture '" + kind + "' is unknown, expected one of " + known);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

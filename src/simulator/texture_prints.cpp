@@ -5,10 +5,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/texture.hpp"
+#include "simulator/random.hpp"
+#include "simulator/texture.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr int kSide = 512;
@@ -214,4 +214,4 @@ cv::Mat paintPrint(const std::string& kind, std::uint32_t seed) {
   return it->second(dice);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

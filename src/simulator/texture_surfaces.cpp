@@ -5,10 +5,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "posefusion/simulator/random.hpp"
-#include "posefusion/simulator/texture.hpp"
+#include "simulator/random.hpp"
+#include "simulator/texture.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 constexpr int kSide = 512;
@@ -164,4 +164,4 @@ std::vector<std::string> textureKinds() {
   return kinds;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/truth.hpp"
+#include "simulator/truth.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 /// How deep under the skin a joint may lie, metres.
@@ -74,4 +74,4 @@ People asDetected(const SimulatedFrame& frame) {
   return people;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

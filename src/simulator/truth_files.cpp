@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/truth_files.hpp"
+#include "simulator/truth_files.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -169,4 +170,4 @@ void saveScenePoints(const std::string& path, const World& world, double spacing
   file.commit();
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -3,15 +3,17 @@
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/camera_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
-#include "posefusion/simulator/output.hpp"
-#include "posefusion/simulator/truth.hpp"
-#include "posefusion/simulator/truth_files.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "simulator/output.hpp"
+#include "simulator/truth.hpp"
+#include "simulator/truth_files.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +78,4 @@ std::unique_ptr<Output> openTumOutput(const std::string& folder, const Simulatio
   return std::make_unique<TumOutput>(folder, simulation);
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

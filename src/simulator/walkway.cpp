@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/walkway.hpp"
+#include "simulator/walkway.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <queue>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
@@ -140,4 +140,4 @@ std::vector<Vector2d> Walkway::findWay(const Vector2d& from, const Vector2d& to)
   return way;
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

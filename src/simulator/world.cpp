@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/world.hpp"
+#include "simulator/world.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 using Eigen::Vector3f;
@@ -135,4 +135,4 @@ void addCylinder(World& world, const Placement& at, std::uint16_t material, cons
   });
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/simulator/yaml_map.hpp"
+#include "simulator/yaml_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::simulator {
+namespace pf::simulator {
 namespace {
 
 std::string shortText(const YAML::Node& node) {
@@ -176,4 +176,4 @@ void YamlMap::finish() const {
   }
 }
 
-}  // namespace posefusion::simulator
+}  // namespace pf::simulator

@@ -6,7 +6,7 @@
 
 #include "random.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 struct Wave {
@@ -52,4 +52,4 @@ Eigen::Isometry3d cameraAt(double time_s, std::uint32_t seed) {
   return T_room_camera;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

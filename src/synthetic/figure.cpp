@@ -6,7 +6,7 @@
 
 #include "random.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 using Vec3 = Eigen::Vector3f;
@@ -160,4 +160,4 @@ Figure figureAt(double time_s, std::uint32_t seed) {
   return figure;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

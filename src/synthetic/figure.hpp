@@ -8,7 +8,7 @@
 #include "posefusion/pose/skeleton.hpp"
 #include "shape.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// The walking person at one moment: solids and the joints inside them, room frame, metres.
 struct Figure {
@@ -20,4 +20,4 @@ struct Figure {
 /// its way it is at time 0.
 Figure figureAt(double time_s, std::uint32_t seed);
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// Random bits that are a function of their index alone (the finaliser of SplitMix64), so that
 /// pixels can be made in any order.
@@ -25,4 +25,4 @@ inline float normal(std::uint64_t bits, int shift) {
   return (sum - 1.5F) * 2.0F;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

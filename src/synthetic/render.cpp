@@ -7,7 +7,7 @@
 
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 using Vec3 = Eigen::Vector3f;
@@ -101,4 +101,4 @@ Picture render(const std::vector<Shape>& shapes, const std::vector<Texture>& tex
   return picture;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -9,7 +9,7 @@
 #include "shape.hpp"
 #include "texture.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// What a perfect camera sees.
 struct Picture {
@@ -22,4 +22,4 @@ struct Picture {
 Picture render(const std::vector<Shape>& shapes, const std::vector<Texture>& textures,
                const PinholeCamera& camera, const Eigen::Isometry3d& T_room_camera);
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

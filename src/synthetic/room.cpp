@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "room.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 /// A surface with `repeats` to the metre; every piece starts at another place of the pattern.
@@ -143,4 +143,4 @@ std::vector<Shape> makeRoom() {
   return room;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

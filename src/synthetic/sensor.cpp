@@ -7,7 +7,7 @@
 #include "posefusion/core/parallel.hpp"
 #include "random.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 // Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", 2012: sigma_z = 1.425e-3
@@ -106,4 +106,4 @@ void addColorNoise(cv::Mat& color, std::uint64_t seed) {
   });
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/camera.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// Depth in millimetres (CV_16UC1) as a structured-light camera would measure `true_depth`
 /// (CV_32FC1, metres): disparity with noise of its own and rounded to its steps, so that errors
@@ -21,4 +21,4 @@ cv::Mat exactDepth(const cv::Mat& true_depth);
 /// Adds noise of two grey levels or so.
 void addColorNoise(cv::Mat& color, std::uint64_t seed);
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

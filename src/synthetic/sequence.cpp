@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/synthetic/sequence.hpp"
+#include "synthetic/sequence.hpp"
 
 #include <cmath>
 #include <string>
@@ -13,7 +13,7 @@
 #include "sensor.hpp"
 #include "texture.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr double kFramesPerSecond = 30.0;
@@ -153,4 +153,4 @@ Eigen::Vector3d SyntheticSequence::up() const {
   return state_->T_map_room.linear() * Eigen::Vector3d::UnitZ();
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 constexpr float kNearest = 0.05F;  // metres; nothing is seen closer than this
@@ -137,4 +137,4 @@ Eigen::Vector2f PlacedShape::surfaceCoordinates(const Hit& hit) const {
   }
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -10,7 +10,7 @@
 #include "posefusion/core/camera.hpp"
 #include "texture.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// How a surface is painted.
 struct Material {
@@ -71,4 +71,4 @@ class PlacedShape {
   cv::Rect pixels_;
 };
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -9,7 +9,7 @@
 #include "posefusion/core/parallel.hpp"
 #include "random.hpp"
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 namespace {
 
 constexpr int kSize = 512;
@@ -198,4 +198,4 @@ std::vector<Texture> makeTextures(std::uint32_t seed) {
   return textures;
 }
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace posefusion::synthetic {
+namespace pf::synthetic {
 
 /// A square image that repeats, with its halved copies for distant views.
 class Texture {
@@ -44,4 +44,4 @@ enum class Surface : std::uint8_t {
 /// All surfaces in the order of the enumeration. A function of the seed.
 std::vector<Texture> makeTextures(std::uint32_t seed);
 
-}  // namespace posefusion::synthetic
+}  // namespace pf::synthetic

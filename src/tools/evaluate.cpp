@@ -6,7 +6,7 @@
 #include <exception>
 #include <iostream>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 int evaluate(int argc, char** argv) {
@@ -60,11 +60,11 @@ int evaluate(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf
 
 int main(int argc, char** argv) {
   try {
-    return posefusion::evaluate(argc, argv);
+    return pf::evaluate(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "posefusion_evaluate: " << error.what() << "\n";
     return 1;

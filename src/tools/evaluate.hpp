@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace posefusion {
+namespace pf {
 
 /// posefusion_evaluate GT EST
 struct TrajectoryQuestion {
@@ -29,4 +29,4 @@ void evaluateRun(const RunQuestion& question);
 /// posefusion_evaluate masks TRUTH_DIR MASK_DIR
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 #include "evaluate.hpp"
 #include "posefusion/evaluation/masks.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 void print(const char* title, const MaskScore& score) {
@@ -38,8 +38,8 @@ void evaluateMasks(const std::string& truth, const std::string& masks, bool json
   }
   print("people found by the detector", check.found());
   print("frames with people over 2 % of pixels", check.crowded());
-  std::printf("%-36s %.3f %% of pixels (%d frames)\n", "falsely masked", 100 * check.falseFraction(),
-              check.frames());
+  std::printf("%-36s %.3f %% of pixels (%d frames)\n", "falsely masked",
+              100 * check.falseFraction(), check.frames());
 }
 
-}  // namespace posefusion
+}  // namespace pf

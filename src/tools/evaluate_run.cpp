@@ -8,14 +8,16 @@
 
 #include "evaluate.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/evaluation/map_check.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "posefusion_ros/bag_source.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 using Poses = std::map<std::int64_t, Eigen::Isometry3d>;
@@ -131,4 +133,4 @@ void evaluateRun(const RunQuestion& q) {
   printAnswer(depth, people, masked_frames, q.json);
 }
 
-}  // namespace posefusion
+}  // namespace pf

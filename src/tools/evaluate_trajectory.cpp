@@ -5,10 +5,11 @@
 
 #include "evaluate.hpp"
 #include "posefusion/evaluation/metrics.hpp"
-#include "posefusion/evaluation/plot.hpp"
 #include "posefusion/io/images.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/plot.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 struct Answer {
@@ -73,4 +74,4 @@ void evaluateTrajectory(const TrajectoryQuestion& question) {
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

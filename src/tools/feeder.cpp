@@ -21,7 +21,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
+using pf::InputError;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
@@ -136,7 +136,7 @@ class Feeder {
            !ros::ok();
   }
 
-  void send(const posefusion::RgbdFrame& frame) {
+  void send(const pf::RgbdFrame& frame) {
     std_msgs::Header header;
     header.stamp = toTime(frame.stamp_ns);
     header.frame_id = settings_.frame_id;
@@ -174,7 +174,7 @@ class Feeder {
   }
 
   FeederSettings settings_;
-  std::unique_ptr<posefusion::FrameSource> source_;
+  std::unique_ptr<pf::FrameSource> source_;
   ros::NodeHandle handle_;
   std::unique_ptr<TransformReplay> transforms_;
   CreditWindow window_;

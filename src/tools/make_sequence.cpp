@@ -9,11 +9,11 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/tum_writer.hpp"
-#include "posefusion/synthetic/sequence.hpp"
+#include "synthetic/sequence.hpp"
 
 namespace {
 
-using namespace posefusion;
+using namespace pf;
 
 void write(const SyntheticSequence& sequence, const std::string& folder) {
   const bool terminal = isatty(STDERR_FILENO) != 0;

@@ -8,15 +8,15 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/pose/detector.hpp"
-#include "posefusion/simulator/contact_sheet.hpp"
-#include "posefusion/simulator/scenario.hpp"
-#include "posefusion/simulator/simulation.hpp"
 #include "progress.hpp"
+#include "simulator/contact_sheet.hpp"
+#include "simulator/scenario.hpp"
+#include "simulator/simulation.hpp"
 
 namespace {
 
-using namespace posefusion;
-using namespace posefusion::simulator;
+using namespace pf;
+using namespace pf::simulator;
 
 constexpr int kFewestJoints = 4;
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr double kTerminalIntervalMs = 100;
@@ -63,4 +63,4 @@ void Progress::draw(std::size_t done, bool last) {
   std::fflush(stderr);
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/stopwatch.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Progress on stderr: a bar with the remaining time on a terminal, now and then a line otherwise.
 class Progress {
@@ -29,4 +29,4 @@ class Progress {
   Stopwatch watch_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -14,13 +14,14 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
-#include "posefusion/io/run.hpp"
-#include "posefusion/io/run_report.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/run.hpp"
+#include "posefusion/run/run_report.hpp"
 #include "progress.hpp"
 #include "run_observers.hpp"
 #include "run_options.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;  // the signal that came
@@ -88,7 +89,8 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
         progress.say("frame left out: " + frame.status.detail);
       }
       if (frame.status.map_full && !std::exchange(full, true)) {
-        progress.say("the map is full (map.memory_limit_mb): tracking goes on, without new surfels");
+        progress.say(
+            "the map is full (map.memory_limit_mb): tracking goes on, without new surfels");
       }
       progress.update(report.statistics().frames().read);
       return stop_requested == 0 && report.statistics().frames().read < limit;
@@ -127,11 +129,11 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace posefusion
+}  // namespace pf
 
 int main(int argc, char** argv) {
   try {
-    return posefusion::run(argc, argv);
+    return pf::run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "posefusion_run: " << error.what() << "\n";
     return 1;

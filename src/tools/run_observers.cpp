@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_observers.hpp"
 
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// Before it the map is too young to be compared with.
@@ -35,4 +35,4 @@ void LiveDepthCheck::add(const ProcessedFrame& frame) {
   check_.add(still, frame.segmentation.mask, frame.status.T_map_camera);
 }
 
-}  // namespace posefusion
+}  // namespace pf

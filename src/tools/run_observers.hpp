@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "posefusion/evaluation/map_check.hpp"
-#include "posefusion/pipeline.hpp"
+#include "posefusion/slam/pipeline.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Writes mask/ (a PNG per frame, named by its stamp, 255 = person) and people.json, the people as
 /// the detector found them.
@@ -36,4 +36,4 @@ class LiveDepthCheck {
   int index_ = 0;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <vector>
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 /// Options that end up in the configuration.
@@ -81,4 +81,4 @@ std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options) {
   return std::nullopt;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "posefusion/config.hpp"
+#include "posefusion/slam/config.hpp"
 #include "posefusion_ros/bag_source.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// What the user asks of posefusion_run.
 struct RunOptions {
@@ -28,4 +28,4 @@ struct RunOptions {
 /// --print-config, a wrong option: said on stderr). Throws InputError for a wrong setting.
 std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options);
 
-}  // namespace posefusion
+}  // namespace pf

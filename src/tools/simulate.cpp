@@ -8,17 +8,17 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/images.hpp"
-#include "posefusion/simulator/contact_sheet.hpp"
-#include "posefusion/simulator/output.hpp"
-#include "posefusion/simulator/scenario.hpp"
-#include "posefusion/simulator/simulation.hpp"
 #include "progress.hpp"
 #include "simulate_bag.hpp"
+#include "simulator/contact_sheet.hpp"
+#include "simulator/output.hpp"
+#include "simulator/scenario.hpp"
+#include "simulator/simulation.hpp"
 
 namespace {
 
-using namespace posefusion;
-using namespace posefusion::simulator;
+using namespace pf;
+using namespace pf::simulator;
 
 volatile std::sig_atomic_t stop_asked = 0;
 void askStop(int signal) { stop_asked = signal; }

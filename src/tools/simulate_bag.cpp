@@ -13,11 +13,12 @@
 #include <filesystem>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/simulator/truth.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "simulator/truth.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 using simulator::SimulatedFrame;
@@ -135,4 +136,4 @@ std::unique_ptr<simulator::Output> openBagOutput(const std::string& path) {
   return std::make_unique<BagOutput>(path);
 }
 
-}  // namespace posefusion
+}  // namespace pf

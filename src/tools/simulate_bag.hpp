@@ -4,13 +4,13 @@
 #include <memory>
 #include <string>
 
-#include "posefusion/simulator/output.hpp"
+#include "simulator/output.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A ROS bag with the names of openni2_launch: colour, registered depth, camera_info, masks,
 /// people, the true pose on tf and as a topic. It gets its name when it is whole; an unfinished one
 /// is removed. Throws InputError naming the file.
 std::unique_ptr<simulator::Output> openBagOutput(const std::string& path);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -16,7 +16,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
+using pf::InputError;
 
 /// A bag that gets its name only when it is whole.
 class BagFile {
@@ -61,7 +61,7 @@ std_msgs::Header headerAt(std::int64_t stamp_ns, const char* frame) {
   return header;
 }
 
-void writeTruth(const posefusion::Trajectory& truth, BagFile& bag) {
+void writeTruth(const pf::Trajectory& truth, BagFile& bag) {
   for (const auto& stamped : truth) {
     geometry_msgs::PoseStamped pose;
     pose.header = headerAt(stamped.stamp_ns, "world");
@@ -70,16 +70,16 @@ void writeTruth(const posefusion::Trajectory& truth, BagFile& bag) {
   }
 }
 
-void writeFrame(const posefusion::RgbdFrame& frame, BagFile& bag) {
+void writeFrame(const pf::RgbdFrame& frame, BagFile& bag) {
   const std_msgs::Header header = headerAt(frame.stamp_ns, frames::kOptical);
   bag.write(bag_topics::kCameraInfo, toCameraInfo(frame.camera, header), header.stamp);
   bag.write(bag_topics::kDepth, *toDepthImage(frame, header), header.stamp);
   bag.write(bag_topics::kColor, *toImage(frame.color, "rgb8", header), header.stamp);
 }
 
-void convert(posefusion::FrameSource& source, int max_frames, const std::string& out) {
+void convert(pf::FrameSource& source, int max_frames, const std::string& out) {
   BagFile bag(out);
-  const posefusion::RecordedPeople people = source.people();
+  const pf::RecordedPeople people = source.people();
   int written = 0, defects = 0;
   while (max_frames == 0 || written < max_frames) {
     const auto next = source.next();
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {
-    posefusion_ros::convert(*posefusion::openTumFolder(input, camera_file), max_frames, out);
+    posefusion_ros::convert(*pf::openTumFolder(input, camera_file), max_frames, out);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "posefusion_to_bag: " << error.what() << "\n";

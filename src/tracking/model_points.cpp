@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // A surfel that so many frames have supported counts fully. Until then it may belong to somebody
@@ -108,4 +108,4 @@ void ModelPyramid::assign(const ModelView& view) {
   }
 }
 
-}  // namespace posefusion
+}  // namespace pf

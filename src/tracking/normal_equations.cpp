@@ -6,7 +6,7 @@
 #include "normal_equations_kernel.hpp"
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // In groups of lanes: 1024 points a task, whose float sums stay exact enough.
@@ -92,4 +92,4 @@ Matrix6d NormalEquations::hessian() const {
 
 Vector6d NormalEquations::gradient() const { return Eigen::Map<const Vector6d>(g); }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "normal_equations_kernel.hpp"
 
-#include "posefusion/core/depth_noise.hpp"
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
-namespace posefusion::kernel {
+namespace pf::kernel {
 namespace {
 
 constexpr int kLanes = 16;
 
-// A pair agrees when its distance can be explained by noise. Pairs further apart still pull, weakly.
+// A pair agrees when its distance can be explained by noise. Pairs further apart still pull,
+// weakly.
 constexpr float kInlierSigmas = 3.0F;
 
 #define POSEFUSION_INLINE inline __attribute__((always_inline))
@@ -165,4 +166,4 @@ void accumulate(const Points& points, const Image& image, const Motion& motion, 
   }
 }
 
-}  // namespace posefusion::kernel
+}  // namespace pf::kernel

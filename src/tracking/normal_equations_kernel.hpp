@@ -5,7 +5,7 @@
 
 /// The inner loop of tracking on plain arrays: no Eigen, no OpenCV, so that it can be compiled once
 /// per instruction set (core/parallel.hpp).
-namespace posefusion::kernel {
+namespace pf::kernel {
 
 struct Points {
   const float *x, *y, *z, *nx, *ny, *nz, *intensity, *weight;
@@ -35,4 +35,4 @@ constexpr int kSums = 35;
 void accumulate(const Points& points, const Image& image, const Motion& motion, const Gates& gates,
                 std::size_t begin, std::size_t end, double* sums);
 
-}  // namespace posefusion::kernel
+}  // namespace pf::kernel

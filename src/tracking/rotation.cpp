@@ -6,7 +6,7 @@
 
 #include "posefusion/core/se3.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 constexpr int kMaxIterations = 12;
@@ -92,4 +92,4 @@ Eigen::Matrix3d alignRotation(const SmallImage& previous, const SmallImage& curr
   return best;
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -8,7 +8,7 @@
 
 #include "posefusion/tracking/normal_equations.hpp"
 
-namespace posefusion {
+namespace pf {
 namespace {
 
 // A step below this (rad and m) ends a level; on the finest one it is also what "converged" means.
@@ -97,4 +97,4 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   return result;
 }
 
-}  // namespace posefusion
+}  // namespace pf

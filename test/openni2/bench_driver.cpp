@@ -9,7 +9,7 @@
 #include "device_fixture.hpp"
 #include "stream_publisher.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr std::size_t kFrames = 300;
@@ -72,9 +72,9 @@ int run() {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "bench_openni2_driver");
-  return posefusion::openni2::run();
+  return pf::openni2::run();
 }

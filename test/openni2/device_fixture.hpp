@@ -16,7 +16,7 @@
 #include "posefusion_openni2/session.hpp"
 #include "virtual_device.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The virtual camera of this process. The module stays loaded for ever, so that what it was told
 /// outlives a restart of the library.
@@ -147,4 +147,4 @@ inline testing::AssertionResult contains(const std::string& text, const std::str
   return testing::AssertionFailure() << "'" << text << "' does not contain '" << part << "'";
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -10,7 +10,7 @@
 
 #include "device_fixture.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 using diagnostic_msgs::DiagnosticStatus;
 using sensor_msgs::CameraInfo;
@@ -136,4 +136,4 @@ inline int servedIndex(const Image& image, int to) {
   return -1;
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

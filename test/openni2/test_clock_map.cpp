@@ -7,7 +7,7 @@
 
 #include "posefusion_openni2/clock_map.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -104,4 +104,4 @@ TEST(ClockMap, TheLastFrameOfARoundMayComeAfterTheFirstOfTheNext) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

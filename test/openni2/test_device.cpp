@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "device_fixture.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 class OpenDevice : public DeviceTest {};
@@ -161,4 +161,4 @@ TEST_F(OpenDevice, SaysThatItHasNoExposureSettings) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

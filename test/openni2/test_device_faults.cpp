@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "device_fixture.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 class DeviceFaults : public DeviceTest {
@@ -167,4 +167,4 @@ TEST_F(DeviceFaults, TwoDevicesStreamAtOnce) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -7,7 +7,7 @@
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 std::size_t entriesOf(const char* folder) {
@@ -32,8 +32,8 @@ struct Holdings {
 
 class DeviceLeaks : public DeviceTest {};
 
-// Each second time synchronised. The camera is silent then while streams start and stop: the library
-// crashes, rarely, on a frame that comes in that instant (docs/driver.md).
+// Each second time synchronised. The camera is silent then while streams start and stop: the
+// library crashes, rarely, on a frame that comes in that instant (docs/driver.md).
 TEST_F(DeviceLeaks, NoneOver1000TimesOpenAndClose) {
   const Session session;  // as the nodelet has: OpenNI2 itself leaks when it is started again
   DeviceSettings settings;
@@ -68,4 +68,4 @@ TEST_F(DeviceLeaks, NoneOver1000TimesOpenAndClose) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

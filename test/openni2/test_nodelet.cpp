@@ -5,7 +5,7 @@
 
 #include "nodelet_fixture.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 TEST_F(DriverNodelet, PublishesWhatWasServed) {
@@ -152,7 +152,7 @@ TEST_F(DriverNodelet, RecordsAFileAndPlaysIt) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

@@ -4,7 +4,7 @@
 
 #include "nodelet_fixture.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 TEST_F(DriverNodelet, ComesBackAfterTheCameraWasUnplugged) {
@@ -88,4 +88,4 @@ TEST_F(DriverNodelet, GoesWhileItStreamsAndWhileItRecords) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

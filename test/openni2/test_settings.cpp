@@ -4,7 +4,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion_openni2/settings.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 TEST(StreamMode, IsReadAsItIsWritten) {
@@ -28,4 +28,4 @@ TEST(StreamMode, RefusesAnythingElseAndNamesIt) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -8,7 +8,7 @@
 
 #include "posefusion_openni2/usb_access.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST_F(UsbAccess, IsSilentAboutOtherDevicesAndMissingFolders) {
 }
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

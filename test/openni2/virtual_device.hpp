@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// A virtual camera, served to the real OpenNI2 library by a driver module made for tests only. A
 /// test in the same process reaches it through virtualDevice(): it tells the camera how to behave
@@ -91,7 +91,7 @@ inline void virtualDepth(int index, int width, int height, std::uint16_t* mm) {
   }
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2
 
 /// The camera in this process's driver module.
-extern "C" posefusion::openni2::VirtualDevice* posefusionVirtualDevice(int number);
+extern "C" pf::openni2::VirtualDevice* posefusionVirtualDevice(int number);

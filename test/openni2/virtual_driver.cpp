@@ -7,7 +7,7 @@
 
 #include "virtual_stream.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 VirtualDevice g_devices[kVirtualDevices];
@@ -154,11 +154,11 @@ struct Initially {
 } g_initially;
 
 }  // namespace
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2
 
-ONI_C_API_EXPORT posefusion::openni2::VirtualDevice* posefusionVirtualDevice(int number) {
-  return &posefusion::openni2::g_devices[number];
+ONI_C_API_EXPORT pf::openni2::VirtualDevice* posefusionVirtualDevice(int number) {
+  return &pf::openni2::g_devices[number];
 }
 
-using posefusion::openni2::VirtualDriver;
+using pf::openni2::VirtualDriver;
 ONI_EXPORT_DRIVER(VirtualDriver)

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 template <typename Value>
@@ -206,4 +206,4 @@ void VirtualStream::raise(int index, bool cut) {
   getServices().releaseFrame(frame);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -11,7 +11,7 @@
 
 #include "virtual_device.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The modes of the sensor, as OpenNI2 wants them.
 const std::vector<OniVideoMode>& virtualModes(OniSensorType sensor);
@@ -51,4 +51,4 @@ class VirtualStream : public oni::driver::StreamBase {
   std::thread thread_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

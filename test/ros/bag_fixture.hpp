@@ -16,13 +16,13 @@
 namespace posefusion_ros {
 
 namespace enc = sensor_msgs::image_encodings;
-using posefusion::errorOf;
-using posefusion::SourceFrame;
+using pf::errorOf;
+using pf::SourceFrame;
 
 inline constexpr std::int64_t kMs = 1'000'000;
 
-inline posefusion::PinholeCamera camera() {
-  posefusion::PinholeCamera c;
+inline pf::PinholeCamera camera() {
+  pf::PinholeCamera c;
   c.width = 64;
   c.height = 48;
   c.fx = c.fy = 60;
@@ -76,7 +76,7 @@ class BagFile {
   std::int64_t now_ns_ = 1'000'000'000;
 };
 
-inline std::vector<SourceFrame> readAll(posefusion::FrameSource& source) {
+inline std::vector<SourceFrame> readAll(pf::FrameSource& source) {
   std::vector<SourceFrame> frames;
   while (auto frame = source.next()) frames.push_back(*frame);
   return frames;
@@ -95,7 +95,7 @@ class BagSourceTest : public testing::Test {
   static bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   }
-  posefusion::TemporaryFolder folder;
+  pf::TemporaryFolder folder;
 };
 
 }  // namespace posefusion_ros

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "posefusion/io/files.hpp"
-#include "posefusion/synthetic/sequence.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "synthetic/sequence.hpp"
 
 namespace posefusion_ros {
 
@@ -29,7 +29,7 @@ struct CameraMessages {
   sensor_msgs::CameraInfoPtr info;
 };
 
-inline CameraMessages toMessages(const posefusion::RgbdFrame& frame) {
+inline CameraMessages toMessages(const pf::RgbdFrame& frame) {
   std_msgs::Header header;
   header.stamp = toTime(frame.stamp_ns);
   header.frame_id = frames::kOptical;
@@ -46,8 +46,8 @@ inline CameraMessages restamped(const CameraMessages& messages, std::int64_t sta
   return copy;
 }
 
-inline posefusion::SyntheticOptions smallSequence(int frames, bool figure) {
-  posefusion::SyntheticOptions options;
+inline pf::SyntheticOptions smallSequence(int frames, bool figure) {
+  pf::SyntheticOptions options;
   options.frames = frames;
   options.figure = figure;
   options.width = 320;
@@ -59,7 +59,7 @@ inline int outcome(const TrackingStatusMsg& status) { return status.outcome; }
 
 /// What a trajectory.txt says besides comments.
 inline std::string posesIn(const std::string& file) {
-  std::istringstream lines(posefusion::readFile(file));
+  std::istringstream lines(pf::readFile(file));
   std::string line, poses;
   while (std::getline(lines, line)) {
     if (line.rfind('#', 0) != 0) poses += line + "\n";

@@ -12,40 +12,41 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/people_json.hpp"
-#include "posefusion/pipeline.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/slam/pipeline.hpp"
 
 namespace posefusion_ros {
 namespace {
 
-using posefusion::SyntheticSequence;
+using pf::SyntheticSequence;
 using sensor_msgs::ImageConstPtr;
 
 TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
-  const posefusion::TemporaryFolder folder;
+  const pf::TemporaryFolder folder;
   const SyntheticSequence sequence(smallSequence(16, true));
-  std::vector<posefusion::RgbdFrame> frames;
-  std::vector<posefusion::People> people;
+  std::vector<pf::RgbdFrame> frames;
+  std::vector<pf::People> people;
   for (int i = 0; i < sequence.frameCount(); ++i) {
     const auto made = sequence.frame(i);
     frames.push_back(made.frame);
     if (i % 2 == 0) people.push_back(made.people);  // between them joints are carried
   }
   cv::GaussianBlur(frames[9].color, frames[9].color, {}, 8);
-  posefusion::savePeople(folder / "people.json", people);
+  pf::savePeople(folder / "people.json", people);
 
   Chain chain("equal");
   chain.set("pose/detector", std::string("recorded"));
   chain.set("people_file", folder / "people.json");
   chain.set("output", folder.str());
   ASSERT_TRUE(chain.load());
-  posefusion::Config config;
+  pf::Config config;
   config.pose.detector = "recorded";
-  posefusion::Pipeline pipeline(
-      config, makePoseDetector(config.pose, posefusion::loadPeople(folder / "people.json")));
-  posefusion::Trajectory expected;
+  pf::Pipeline pipeline(config,
+                        makePoseDetector(config.pose, pf::loadPeople(folder / "people.json")));
+  pf::Trajectory expected;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const auto status = pipeline.process(frames[i]).status;
-    if (status.outcome == posefusion::FrameOutcome::fused) {
+    if (status.outcome == pf::FrameOutcome::fused) {
       expected.push_back({status.stamp_ns, status.T_map_camera});
     }
     chain.send(toMessages(frames[i]));
@@ -60,8 +61,7 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   saveTrajectory(folder / "expected.txt", expected, "");
   saveMap(folder / "expected.ply", pipeline.mapper().map());
   EXPECT_EQ(posesIn(folder / "trajectory.txt"), posesIn(folder / "expected.txt"));
-  EXPECT_EQ(posefusion::readFile(folder / "map.ply"),
-            posefusion::readFile(folder / "expected.ply"));
+  EXPECT_EQ(pf::readFile(folder / "map.ply"), pf::readFile(folder / "expected.ply"));
   chain.unload();
 }
 

@@ -8,7 +8,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::SyntheticSequence;
+using pf::SyntheticSequence;
 
 TEST(Chain, EveryBadFrameGetsOneStatusThatSaysWhy) {
   Chain chain("bad");
@@ -57,7 +57,7 @@ TEST(Chain, DepthWithoutAnythingInItIsReportedAndDoesNoHarm) {
   ASSERT_TRUE(chain.load());
   const SyntheticSequence sequence(smallSequence(4, false));
   EXPECT_EQ(outcome(chain.process(toMessages(sequence.frame(0).frame))), TrackingStatusMsg::FUSED);
-  posefusion::RgbdFrame empty = sequence.frame(1).frame;
+  pf::RgbdFrame empty = sequence.frame(1).frame;
   empty.depth = cv::Mat::zeros(empty.depth.size(), CV_16UC1);
   EXPECT_EQ(outcome(chain.process(toMessages(empty))), TrackingStatusMsg::NO_DEPTH);
   empty = sequence.frame(2).frame;
@@ -92,7 +92,7 @@ TEST(Chain, WithoutAModelItGoesOnWhereToldTo) {
 
 TEST(Chain, ABadParameterLeavesTheNodeletIdle) {
   for (const char* name : {"map/memory_limit_mb", "surfels_period_s"}) {
-    const posefusion::TemporaryFolder folder;
+    const pf::TemporaryFolder folder;
     Chain chain("bad_parameter");
     ros::param::del(chain.space() + "/fusion");
     ros::param::set(chain.space() + "/fusion/output", folder.str());

@@ -4,15 +4,15 @@
 
 #include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 
 namespace posefusion_ros {
 namespace {
 
-using posefusion::SyntheticSequence;
+using pf::SyntheticSequence;
 
 TEST(Chain, ResetEmptiesTheMapAndSaveTellsWhere) {
-  const posefusion::TemporaryFolder folder;
+  const pf::TemporaryFolder folder;
   Chain chain("services");
   chain.set("output", folder / "out");
   ASSERT_TRUE(chain.load());
@@ -33,12 +33,12 @@ TEST(Chain, ResetEmptiesTheMapAndSaveTellsWhere) {
   EXPECT_EQ(outcome(again), TrackingStatusMsg::FUSED);
   EXPECT_NEAR(again.pose.position.x, 0, 1e-9) << "a new map begins";
   chain.unload();
-  EXPECT_EQ(posefusion::loadTrajectory(folder / "out/trajectory.txt").size(), 1U)
+  EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 1U)
       << "the new map was saved at the end";
 }
 
 TEST(Chain, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
-  const posefusion::TemporaryFolder folder;
+  const pf::TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
   Chain chain("unwritable");
   chain.set("output", folder / "file");
@@ -53,14 +53,14 @@ TEST(Chain, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
 }
 
 TEST(Chain, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
-  const posefusion::TemporaryFolder folder;
+  const pf::TemporaryFolder folder;
   Chain chain("jump");
   chain.set("output", folder.str());
   ASSERT_TRUE(chain.load());
   const SyntheticSequence sequence(smallSequence(3, false));
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 3; ++i) {
-      posefusion::RgbdFrame frame = sequence.frame(i).frame;
+      pf::RgbdFrame frame = sequence.frame(i).frame;
       frame.stamp_ns += (round == 0 ? 100 : 50) * 1000000000L;
       const auto status = chain.process(toMessages(frame));
       EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << round << " " << i;

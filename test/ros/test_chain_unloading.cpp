@@ -14,7 +14,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::SyntheticSequence;
+using pf::SyntheticSequence;
 
 /// Does something again and again, in a thread of its own.
 class Repeated {

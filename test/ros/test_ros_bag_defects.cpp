@@ -83,7 +83,7 @@ TEST_F(BagSourceTest, ADamagedBagIsAnErrorThatNamesIt) {
     bag.depth(i * 33 * kMs);
   }
   bag.close();
-  const std::string whole = posefusion::readFile(path());
+  const std::string whole = pf::readFile(path());
   for (const std::size_t size : {whole.size() / 2, whole.size() - 10, std::size_t{100}}) {
     folder.write("x.bag", whole.substr(0, size));
     const std::string error = openError();
@@ -106,7 +106,7 @@ TEST_F(BagSourceTest, AHoleInTheDataKeepsTheFramesBeforeIt) {
     bag.depth(i * 33 * kMs);
   }
   bag.close();
-  std::string whole = posefusion::readFile(path());
+  std::string whole = pf::readFile(path());
   // Within a chunk of messages; the index between chunks stays whole.
   std::fill_n(whole.begin() + static_cast<std::ptrdiff_t>(whole.size() * 5 / 8), 20'000, '\xFF');
   folder.write("x.bag", whole);

@@ -18,7 +18,7 @@ TEST_F(BagSourceTest, ReadsFramesPeopleAndTruth) {
     bag.info();
     bag.depth(i * 33 * kMs + 4 * kMs);
     bag.color(i * 33 * kMs);
-    posefusion::People people{i * 33 * kMs, true, std::vector<posefusion::Person>(1)};
+    pf::People people{i * 33 * kMs, true, std::vector<pf::Person>(1)};
     people.people[0].joints[3] = {10, 20, 0.5F};
     bag.write("/people", toMessage(people, headerAt(people.stamp_ns)));
     geometry_msgs::PoseStamped pose;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/model_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace posefusion_ros {
 namespace {
 
-using posefusion::InputError;
+using pf::InputError;
 
 std_msgs::Header headerAt(std::int64_t stamp_ns) {
   std_msgs::Header header;
@@ -28,8 +28,8 @@ cv::Mat noise(int type) {
   return pixels;
 }
 
-posefusion::PinholeCamera someCamera() {
-  posefusion::PinholeCamera camera;
+pf::PinholeCamera someCamera() {
+  pf::PinholeCamera camera;
   camera.width = 12;
   camera.height = 8;
   camera.fx = 10.5;
@@ -63,7 +63,7 @@ TEST(RosConversions, FramesShareTheBytesOfTheMessages) {
   const auto color = toImage(noise(CV_8UC3), "rgb8", headerAt(5));
   for (const auto& depth : {toImage(noise(CV_16UC1), "16UC1", headerAt(6)),
                             toImage(noise(CV_32FC1), "32FC1", headerAt(6))}) {
-    const posefusion::RgbdFrame frame = toFrame(color, depth, someCamera());
+    const pf::RgbdFrame frame = toFrame(color, depth, someCamera());
     EXPECT_EQ(frame.color.data, color->data.data());
     EXPECT_EQ(frame.depth.data, depth->data.data());
     EXPECT_EQ(frame.stamp_ns, 5);
@@ -140,7 +140,7 @@ TEST(RosConversions, UselessCameraInfoIsAnErrorThatNamesTheField) {
 }
 
 TEST(RosConversions, PeopleGoThereAndBack) {
-  posefusion::People people;
+  pf::People people;
   people.stamp_ns = 1234567890123456789;
   people.detected = true;
   people.people.resize(2);
@@ -156,12 +156,12 @@ TEST(RosConversions, PeopleGoThereAndBack) {
 }
 
 TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {
-  posefusion::RgbdFrame frame;
+  pf::RgbdFrame frame;
   frame.depth = noise(CV_16UC1) * 37;
   frame.depth_unit_m = 1.0 / 5000;
   const auto image = toDepthImage(frame, headerAt(0));
   ASSERT_EQ(image->encoding, "32FC1");
-  posefusion::RgbdFrame again = frame;
+  pf::RgbdFrame again = frame;
   again.depth = toDepth(image);
   cv::Mat expected, actual;
   depthInMetres(frame, 0.01, 100, expected);
@@ -170,9 +170,9 @@ TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {
 }
 
 TEST(RosConversions, StatusConstantsAreThoseOfTheCore) {
-  using posefusion::FrameOutcome;
+  using pf::FrameOutcome;
   const auto code = [](FrameOutcome outcome) {
-    posefusion::FrameStatus status;
+    pf::FrameStatus status;
     status.outcome = outcome;
     return toMessage(status, headerAt(0), status.T_map_camera).outcome;
   };
@@ -187,7 +187,7 @@ TEST(RosConversions, StatusConstantsAreThoseOfTheCore) {
 
 }  // namespace
 TEST(ModelView, KeepsEveryPlaneTheSegmenterReads) {
-  posefusion::ModelView view;
+  pf::ModelView view;
   view.camera.width = 4;
   view.camera.height = 3;
   view.camera.fx = view.camera.fy = 5;
@@ -203,13 +203,12 @@ TEST(ModelView, KeepsEveryPlaneTheSegmenterReads) {
   view.stable = cv::Mat(3, 4, CV_8UC1, cv::Scalar(255));
   view.stable.at<std::uint8_t>(1, 2) = 0;
   const ModelViewMsg::ConstPtr message = toMessage(view, std_msgs::Header());  // owns the pixels
-  const posefusion::ModelView read = fromMessage(message);
+  const pf::ModelView read = fromMessage(message);
   EXPECT_TRUE(read.camera == view.camera);
   EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
   for (const auto plane :
-       {&posefusion::ModelView::depth_m, &posefusion::ModelView::normal_x,
-        &posefusion::ModelView::normal_y, &posefusion::ModelView::normal_z,
-        &posefusion::ModelView::intensity, &posefusion::ModelView::stable}) {
+       {&pf::ModelView::depth_m, &pf::ModelView::normal_x, &pf::ModelView::normal_y,
+        &pf::ModelView::normal_z, &pf::ModelView::intensity, &pf::ModelView::stable}) {
     ASSERT_EQ((read.*plane).type(), (view.*plane).type());
     EXPECT_EQ(cv::norm(read.*plane, view.*plane, cv::NORM_INF), 0);
   }

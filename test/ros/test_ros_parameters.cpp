@@ -14,7 +14,7 @@ template <typename Function>
 std::string errorOf(Function function) {
   try {
     function();
-  } catch (const posefusion::InputError& error) {
+  } catch (const pf::InputError& error) {
     return error.what();
   }
   return "";
@@ -43,7 +43,7 @@ TEST(RosParameters, AreReadWithTheirTypes) {
 
 TEST(RosParameters, ReachTheConfigurationWithAllTheirDigits) {
   Parameters p(someValues(), "/gate");
-  const posefusion::Config config = p.config({"blur"});
+  const pf::Config config = p.config({"blur"});
   EXPECT_EQ(config.blur.threshold, 5.0);
   EXPECT_FALSE(config.blur.enabled);
   EXPECT_EQ(config.tracking.max_distance_m, 0.123456789012345);
@@ -96,7 +96,7 @@ TEST(RosParameters, UnknownSettingsAreErrorsAndUnknownParametersAreListed) {
 
 TEST(RosParameters, NoneAtAllAreTheDefaults) {
   Parameters p(XmlRpcValue(), "/gate");
-  EXPECT_EQ(posefusion::listFields(p.config({})), posefusion::listFields(posefusion::Config{}));
+  EXPECT_EQ(pf::listFields(p.config({})), pf::listFields(pf::Config{}));
   EXPECT_TRUE(p.unknown().empty());
 }
 

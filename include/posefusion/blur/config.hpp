@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "posefusion/core/fields.hpp"
+#include "posefusion/config/fields.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Settings of the blur gate.
 struct BlurConfig {
@@ -26,4 +26,4 @@ inline void visitFields(BlurConfig& c, FieldVisitor& v) {
             "after so many drops in a row the next frame passes whatever its score");
 }
 
-}  // namespace posefusion
+}  // namespace pf

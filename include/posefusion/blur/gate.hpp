@@ -6,7 +6,7 @@
 
 #include "posefusion/blur/config.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// What the gate says of one frame.
 struct BlurScore {
@@ -35,4 +35,4 @@ class BlurGate {
   int drops_in_a_row_ = 0;
 };
 
-}  // namespace posefusion
+}  // namespace pf

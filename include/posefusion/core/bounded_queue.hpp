@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace posefusion {
+namespace pf {
 
 /// Hands items from one thread to another, at most `capacity` waiting. Either side may close it.
 template <typename Item>
@@ -51,4 +51,4 @@ class BoundedQueue {
   bool closed_ = false;
 };
 
-}  // namespace posefusion
+}  // namespace pf

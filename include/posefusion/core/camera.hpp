@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
-namespace posefusion {
+namespace pf {
 
 /// A pinhole camera with an optional plumb_bob distortion, optical frame (z forward, x right,
 /// y down), pixel centres at integer coordinates.
@@ -41,4 +41,4 @@ struct PinholeCamera {
 /// Throws InputError naming the first field that no real camera can have.
 void validate(const PinholeCamera& camera);
 
-}  // namespace posefusion
+}  // namespace pf

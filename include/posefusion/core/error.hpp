@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace posefusion {
+namespace pf {
 
 /// What the user gave cannot be used: a file, a topic, a parameter. The message names it, its value
 /// and what was expected. Tools print it and exit with 1; nodelets count it and go on.
@@ -12,4 +12,4 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,13 +7,13 @@
 
 #include "posefusion/core/camera.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// One registered colour and depth pair. Immutable once made: stages share the pixels.
 struct RgbdFrame {
-  std::int64_t stamp_ns = 0;  ///< time of the colour image, nanoseconds
-  cv::Mat color;              ///< CV_8UC3, R G B
-  cv::Mat depth;              ///< CV_16UC1 in units of depth_unit_m, or CV_32FC1 in metres
+  std::int64_t stamp_ns = 0;   ///< time of the colour image, nanoseconds
+  cv::Mat color;               ///< CV_8UC3, R G B
+  cv::Mat depth;               ///< CV_16UC1 in units of depth_unit_m, or CV_32FC1 in metres
   double depth_unit_m = 1e-3;  ///< metres for one step of a CV_16UC1 depth
   PinholeCamera camera;        ///< of both images
 };
@@ -27,8 +27,9 @@ std::string defectOf(const RgbdFrame& frame);
 void depthInMetres(const RgbdFrame& frame, double min_depth_m, double max_depth_m,
                    cv::Mat& depth_m);
 
-/// The frame without lens distortion: colour by linear, depth by nearest interpolation. The maps are
-/// made once per camera. A frame of an undistorted camera passes through untouched (same pixels).
+/// The frame without lens distortion: colour by linear, depth by nearest interpolation. The maps
+/// are made once per camera. A frame of an undistorted camera passes through untouched (same
+/// pixels).
 class Rectifier {
  public:
   RgbdFrame rectify(const RgbdFrame& frame);
@@ -38,4 +39,4 @@ class Rectifier {
   cv::Mat map1_, map2_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,10 +7,10 @@
 
 #include <cstddef>
 
-namespace posefusion {
+namespace pf {
 
-/// Calls body(begin, end) on pieces of [0, count) of about `grain` items, in parallel. The body must
-/// write only what its own items own, so that the number of threads cannot change the result.
+/// Calls body(begin, end) on pieces of [0, count) of about `grain` items, in parallel. The body
+/// must write only what its own items own, so that the number of threads cannot change the result.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
   if (count == 0) return;
@@ -39,7 +39,7 @@ Sum deterministicSum(std::size_t count, std::size_t grain, const Body& body) {
       tbb::simple_partitioner());
 }
 
-}  // namespace posefusion
+}  // namespace pf
 
 /// Compiles the function once per instruction set and picks at run time. Only for kernels on plain
 /// arrays: code that touches Eigen, PCL or Ceres types must not be compiled twice (see

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace posefusion {
+namespace pf {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -26,4 +26,4 @@ Vector6d logSe3(const Eigen::Isometry3d& T);
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 
-}  // namespace posefusion
+}  // namespace pf

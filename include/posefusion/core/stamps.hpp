@@ -3,10 +3,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
-namespace posefusion {
+namespace pf {
+
+/// Decimal seconds ("1341845820.819654") to nanoseconds, exactly. Throws InputError.
+std::int64_t parseStamp(const std::string& seconds);
+
+/// Nanoseconds as decimal seconds with six decimals, nine where six would lose something.
+std::string formatStamp(std::int64_t stamp_ns);
 
 /// Pairs two lists of stamps as the TUM benchmark does: of all pairs less than `max_difference_ns`
 /// apart the closest is taken first, and each stamp is used once. Indices into `first` and
@@ -15,4 +22,4 @@ std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
     const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second,
     std::int64_t max_difference_ns);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace posefusion {
+namespace pf {
 
 /// Wall time of stages, for reports only: no result may depend on it.
 class Stopwatch {
@@ -20,4 +20,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -9,7 +9,7 @@
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// How well the depth of frames agrees with the map rendered from their poses: the absolute
 /// difference along the optical axis at the pixels where both have depth, over all pixels of all
@@ -61,4 +61,4 @@ class PeopleCheck {
   std::vector<std::uint32_t> on_mask_, beside_;  ///< frames that the surfel agreed with
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/pose/skeleton.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Means over frames. A frame without any mask pixel has no precision and does not count in it.
 struct MaskScore {
@@ -16,9 +16,10 @@ struct MaskScore {
   double precision = 0;
 };
 
-/// The true person pixels that the detector found: parts of the true mask, connected where the depth
-/// jumps by less than 0.1 m, of at least 500 pixels with three joints or more inside. Pixels without
-/// depth join the part they touch. `truth`: CV_8UC1, > 0 = person; `depth_m`: CV_32FC1, 0 = invalid.
+/// The true person pixels that the detector found: parts of the true mask, connected where the
+/// depth jumps by less than 0.1 m, of at least 500 pixels with three joints or more inside. Pixels
+/// without depth join the part they touch. `truth`: CV_8UC1, > 0 = person; `depth_m`: CV_32FC1, 0 =
+/// invalid.
 cv::Mat foundParts(const cv::Mat& truth, const cv::Mat& depth_m, const People& people);
 
 /// Compares masks of people with true ones, frame by frame (CV_8UC1, > 0 = person).
@@ -51,8 +52,8 @@ class MaskCheck {
 
 /// Checks the masks of a run (`mask_folder`: its output folder, or the folder of <stamp>.png files)
 /// against a sequence (`truth_folder`: with mask/, or a folder of <stamp>.png files, or a sequence
-/// without mask/: then nobody is in it). The found people are told from people.json beside the masks
-/// and the sequence's depth, where both exist. Throws InputError naming what is missing.
+/// without mask/: then nobody is in it). The found people are told from people.json beside the
+/// masks and the sequence's depth, where both exist. Throws InputError naming what is missing.
 MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_folder);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/trajectory.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Sturm et al., "A Benchmark for the Evaluation of RGB-D SLAM Systems", IROS 2012: the definitions
 /// of the TUM benchmark, poses matched within 0.02 s.
@@ -68,4 +68,4 @@ RelativeError relativeErrorPerFrame(const Trajectory& truth, const Trajectory& e
 RelativeError relativeErrorPerSecond(const Trajectory& truth, const Trajectory& estimate,
                                      double scale = 1.0);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/camera.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A camera as users keep it in a file.
 struct CameraFile {
@@ -23,4 +23,4 @@ CameraFile loadCamera(const std::string& path);
 /// Writes plain keys. Throws InputError naming the file.
 void saveCamera(const std::string& path, const CameraFile& file);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-namespace posefusion {
+namespace pf {
 
 /// A file that appears under its name only when it is whole: written beside it under a temporary
 /// name, renamed by commit(). Without commit() nothing is left behind.
@@ -34,4 +34,4 @@ std::string readFile(const std::string& path);
 /// nothing can be written into it.
 void makeFolder(const std::string& path);
 
-}  // namespace posefusion
+}  // namespace pf

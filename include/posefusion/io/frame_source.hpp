@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "posefusion/core/frame.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/trajectory.hpp"
 #include "posefusion/pose/detector.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// One frame of a recording; where it cannot be read, `defect` says why and the images are empty.
 struct SourceFrame {
@@ -54,4 +54,4 @@ class FrameSource {
 std::unique_ptr<FrameSource> openTumFolder(const std::string& folder,
                                            const std::string& camera_file = "");
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace posefusion {
+namespace pf {
 
 /// A compressed colour image (PNG, JPEG, ...) as CV_8UC3 R G B; empty when it is not whole.
 cv::Mat decodeColor(const void* data, std::size_t size);
@@ -17,4 +17,4 @@ cv::Mat decodeDepth(const void* data, std::size_t size);
 /// InputError naming the file.
 void savePng(const std::string& path, const cv::Mat& image);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,7 +5,7 @@
 
 #include "posefusion/map/surfel_map.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Writes the stable surfels, in the order in which they were made, as binary little-endian PLY:
 /// float x y z nx ny nz (map frame, metres), uchar red green blue, float radius confidence. Returns
@@ -15,4 +15,4 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map);
 /// Reads what saveMap() writes; weights are the confidences. Throws InputError naming the file.
 SurfelArrays loadMap(const std::string& path);
 
-}  // namespace posefusion
+}  // namespace pf

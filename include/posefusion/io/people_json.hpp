@@ -6,7 +6,7 @@
 
 #include "posefusion/pose/detector.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Recorded people of a sequence, `people.json`:
 ///
@@ -21,4 +21,4 @@ RecordedPeople loadPeople(const std::string& path);
 /// Writes to a temporary name and renames it. Throws InputError naming the file.
 void savePeople(const std::string& path, const std::vector<People>& frames);
 
-}  // namespace posefusion
+}  // namespace pf

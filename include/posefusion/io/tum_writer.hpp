@@ -6,10 +6,10 @@
 #include <string>
 
 #include "posefusion/core/frame.hpp"
-#include "posefusion/evaluation/trajectory.hpp"
+#include "posefusion/core/trajectory.hpp"
 #include "posefusion/pose/skeleton.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Writes a sequence as a TUM folder, frame by frame: rgb/ depth/ [mask/] and, at finish(), rgb.txt
 /// depth.txt associations.txt groundtruth.txt camera.yaml [people.json]. openTumFolder() reads it.
@@ -37,4 +37,4 @@ class TumWriter {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "posefusion/core/fields.hpp"
+#include "posefusion/config/fields.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Settings of the surfel map.
 struct MapConfig {
@@ -34,4 +34,4 @@ inline void visitFields(MapConfig& c, FieldVisitor& v) {
            "memory the surfels may take; a full map takes no new ones");
 }
 
-}  // namespace posefusion
+}  // namespace pf

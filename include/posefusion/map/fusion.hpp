@@ -6,10 +6,10 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "posefusion/frame/working_frame.hpp"
 #include "posefusion/map/surfel_map.hpp"
-#include "posefusion/tracking/working_frame.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// What one frame did to the map.
 struct FusionCounts {
@@ -21,11 +21,11 @@ struct FusionCounts {
 /// Fuses frames into a map. Keeps its work memory between calls. Not thread safe.
 ///
 /// Seen from the surfels, so that each is changed by exactly one pixel and threads never meet: an
-/// active surfel projects to a pixel; if the depth there agrees it moves along the pixel's ray by the
-/// running weighted mean (weights 1 / variance of the sensor) and gains confidence; if the frame sees
-/// well behind it, that is a violation of free space. Pixels that no surfel explains become new
-/// surfels. Seen through too often, or unstable and not supported for long: removed. So a person who
-/// was fused by mistake goes away once the room behind is seen.
+/// active surfel projects to a pixel; if the depth there agrees it moves along the pixel's ray by
+/// the running weighted mean (weights 1 / variance of the sensor) and gains confidence; if the
+/// frame sees well behind it, that is a violation of free space. Pixels that no surfel explains
+/// become new surfels. Seen through too often, or unstable and not supported for long: removed. So
+/// a person who was fused by mistake goes away once the room behind is seen.
 class Fuser {
  public:
   FusionCounts fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
@@ -41,4 +41,4 @@ class Fuser {
 /// Removes the surfels for which `doomed` (one flag each) is set, keeping the order of the others.
 std::size_t compact(const std::vector<std::uint8_t>& doomed, SurfelArrays& surfels);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "posefusion/map/model_view.hpp"
+#include "posefusion/frame/model_view.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Which surfels a view shows.
 struct RenderOptions {
@@ -37,4 +37,4 @@ class SurfelRenderer {
   std::size_t buffer_size_ = 0;
 };
 
-}  // namespace posefusion
+}  // namespace pf

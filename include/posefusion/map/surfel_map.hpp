@@ -7,7 +7,7 @@
 
 #include "posefusion/map/config.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Surfels as structure of arrays, in the map frame, in the order in which they were made. One disc
 /// each: position (m), unit normal, mean colour (0..255), radius (m).
@@ -16,8 +16,8 @@ struct SurfelArrays {
   std::vector<float> nx, ny, nz;
   std::vector<float> r, g, b;
   std::vector<float> radius;
-  std::vector<float> weight;      ///< of the running means; a measurement at 1 m counts 1
-  std::vector<float> confidence;  ///< frames that supported it
+  std::vector<float> weight;                ///< of the running means; a measurement at 1 m counts 1
+  std::vector<float> confidence;            ///< frames that supported it
   std::vector<std::int32_t> created, seen;  ///< frame numbers: made, last supported
   std::vector<std::int32_t> violations;     ///< frames that saw through it, less those that did not
 
@@ -68,4 +68,4 @@ class SurfelMap {
   std::size_t refused_ = 0;
 };
 
-}  // namespace posefusion
+}  // namespace pf

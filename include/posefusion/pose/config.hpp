@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "posefusion/core/fields.hpp"
+#include "posefusion/config/fields.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Settings of the pose detector.
 struct PoseConfig {
@@ -22,7 +22,8 @@ struct PoseConfig {
 inline void visitFields(PoseConfig& c, FieldVisitor& v) {
   v.choice("detector", c.detector, {"network", "recorded", "none"},
            "where people come from: a pose network, People recorded with the input, or nowhere");
-  v.text("model", c.model, "weights of the pose network (.pb, .caffemodel, .onnx), its settings in the "
+  v.text("model", c.model,
+         "weights of the pose network (.pb, .caffemodel, .onnx), its settings in the "
          ".yaml of the same name beside it or in config/models; empty = from scripts/get_models");
   v.integer("input_height_px", c.input_height_px, 0, 4096,
             "height of the network's input, the width follows; 0 = as the model's settings say");
@@ -34,4 +35,4 @@ inline void visitFields(PoseConfig& c, FieldVisitor& v) {
   v.integer("max_people", c.max_people, 1, 15, "people kept per frame, best first");
 }
 
-}  // namespace posefusion
+}  // namespace pf

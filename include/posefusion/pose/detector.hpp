@@ -8,7 +8,7 @@
 #include "posefusion/pose/config.hpp"
 #include "posefusion/pose/skeleton.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A source of people: a network, a recording, or none. Called for sharp frames in order, from one
 /// thread at a time.
@@ -22,8 +22,9 @@ class PoseDetector {
 /// People recorded with the input, by stamp (ns).
 using RecordedPeople = std::map<std::int64_t, People>;
 
-/// Makes the detector that the configuration names. Throws InputError naming the file, and how to get
-/// one, where a model is missing or unreadable. `recorded` is used by the "recorded" detector only.
+/// Makes the detector that the configuration names. Throws InputError naming the file, and how to
+/// get one, where a model is missing or unreadable. `recorded` is used by the "recorded" detector
+/// only.
 std::unique_ptr<PoseDetector> makePoseDetector(const PoseConfig& config, RecordedPeople recorded);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 
 #include "posefusion/pose/skeleton.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// One body part that the network draws a heat map for.
 struct NetworkPart {
@@ -26,13 +26,13 @@ struct NetworkLimb {
 
 /// How to feed a pose network and to read its output: the YAML file beside the model.
 struct ModelSettings {
-  std::string prototxt;        ///< Caffe only: file name beside the weights
-  int input_height_px = 320;   ///< the width follows from the image's aspect ratio
-  int input_multiple_px = 16;  ///< height and width are multiples of this
-  double scale = 1.0;          ///< network value = (pixel - mean) * scale
+  std::string prototxt;          ///< Caffe only: file name beside the weights
+  int input_height_px = 320;     ///< the width follows from the image's aspect ratio
+  int input_multiple_px = 16;    ///< height and width are multiples of this
+  double scale = 1.0;            ///< network value = (pixel - mean) * scale
   std::array<double, 3> mean{};  ///< in the network's channel order, grey levels
-  bool bgr = true;             ///< the network's channel order is B G R, otherwise R G B
-  int stride = 8;              ///< input pixels for one output pixel
+  bool bgr = true;               ///< the network's channel order is B G R, otherwise R G B
+  int stride = 8;                ///< input pixels for one output pixel
   std::vector<NetworkPart> parts;
   std::vector<NetworkLimb> limbs;  ///< in the order of assembly
 };
@@ -49,4 +49,4 @@ std::string findModelSettings(const std::string& model_path);
 /// ($XDG_DATA_HOME or ~/.local/share).
 std::string defaultModelPath();
 
-}  // namespace posefusion
+}  // namespace pf

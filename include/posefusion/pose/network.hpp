@@ -7,7 +7,7 @@
 
 #include "posefusion/pose/model_settings.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// The output of a pose network: one CV_32FC1 plane per channel (heat maps of the parts and part
 /// affinity fields), at 1/stride of the network's input.
@@ -48,4 +48,4 @@ class PoseNetwork {
   std::unique_ptr<Backend> backend_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace posefusion {
+namespace pf {
 
 /// A candidate for a joint, in pixels of the heat map (pixel centres at integers).
 struct Peak {
@@ -26,4 +26,4 @@ class PeakFinder {
   cv::Mat enlarged_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

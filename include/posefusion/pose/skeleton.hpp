@@ -7,13 +7,28 @@
 #include <utility>
 #include <vector>
 
-namespace posefusion {
+namespace pf {
 
 /// COCO-18 joints in OpenPose's order.
 enum class Joint : int {
-  nose, neck, right_shoulder, right_elbow, right_wrist, left_shoulder, left_elbow, left_wrist,
-  right_hip, right_knee, right_ankle, left_hip, left_knee, left_ankle,
-  right_eye, left_eye, right_ear, left_ear
+  nose,
+  neck,
+  right_shoulder,
+  right_elbow,
+  right_wrist,
+  left_shoulder,
+  left_elbow,
+  left_wrist,
+  right_hip,
+  right_knee,
+  right_ankle,
+  left_hip,
+  left_knee,
+  left_ankle,
+  right_eye,
+  left_eye,
+  right_ear,
+  left_ear
 };
 constexpr int kJointCount = 18;
 
@@ -42,4 +57,4 @@ struct People {
   std::vector<Person> people;
 };
 
-}  // namespace posefusion
+}  // namespace pf

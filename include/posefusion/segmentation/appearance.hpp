@@ -7,7 +7,7 @@
 
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Frequencies of colours, 8 x 8 x 8 bins of R G B, smoothed.
 class ColourHistogram {
@@ -32,8 +32,9 @@ class ColourHistogram {
   float total_ = 0.0F;
 };
 
-/// Logarithm of the ratio of probabilities, limited to +-limit; a floor keeps unseen colours neutral.
+/// Logarithm of the ratio of probabilities, limited to +-limit; a floor keeps unseen colours
+/// neutral.
 float logLikelihoodRatio(const ColourHistogram& inside, const ColourHistogram& outside, int bin,
                          float limit);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "posefusion/map/model_view.hpp"
+#include "posefusion/frame/model_view.hpp"
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// What the map says of a cell.
 enum class Background : std::uint8_t {
@@ -20,10 +20,10 @@ enum class Background : std::uint8_t {
   farther   ///< the cell is seen through a surface of the map
 };
 
-/// Compares the grid with the map as rendered from another pose. `T_view_camera` takes points of the
-/// grid's camera to the view's. A cell agrees if any surface within a cell's reach in the view is at
-/// its depth, so that an error of a pixel or two in the pose does no harm; it is nearer only if all
-/// of them are behind.
+/// Compares the grid with the map as rendered from another pose. `T_view_camera` takes points of
+/// the grid's camera to the view's. A cell agrees if any surface within a cell's reach in the view
+/// is at its depth, so that an error of a pixel or two in the pose does no harm; it is nearer only
+/// if all of them are behind.
 void compareWithModel(const SceneGrid& grid, const ModelView& view,
                       const Eigen::Isometry3d& T_view_camera, std::vector<Background>& result);
 
@@ -41,4 +41,4 @@ class MotionPredictor {
   Eigen::Isometry3d T_map_other_ = Eigen::Isometry3d::Identity();
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A limb of a body in the camera frame: the line between two joints and how far the body reaches
 /// around it. A joint without a neighbour is a capsule of length zero.
@@ -20,15 +20,15 @@ struct Capsule {
 /// A person's joints lifted into the scene.
 struct Body {
   std::vector<Capsule> capsules;
-  std::vector<int> seeds;  ///< cells that belong to the person for sure
+  std::vector<int> seeds;    ///< cells that belong to the person for sure
   std::vector<int> anchors;  ///< seeds, and cells of the carried mask that stand before the map
-  float depth_m = 0.0F;    ///< median depth of the seeds, 0: no seed has depth
+  float depth_m = 0.0F;      ///< median depth of the seeds, 0: no seed has depth
 };
 
 /// Lifts a person: joints, and samples along limbs between seen joints, get the median depth of
 /// their neighbourhood; samples far from the person's median depth (lifted onto the wall behind or
-/// the table in front) are dropped. Where `near_depth_m` is above 0, the median must be close to it:
-/// so a person who is carried forward does not jump to another who walks in front.
+/// the table in front) are dropped. Where `near_depth_m` is above 0, the median must be close to
+/// it: so a person who is carried forward does not jump to another who walks in front.
 Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m = 0.0F);
 
 /// Distance of every cell to the body's surface line, relative to the capsules' radius (1 = on the
@@ -42,4 +42,4 @@ struct BodyDistance {
 void measureDistance(const std::vector<Body>& bodies, const SceneGrid& grid, float limit,
                      BodyDistance& distance);
 
-}  // namespace posefusion
+}  // namespace pf

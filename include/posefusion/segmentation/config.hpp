@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "posefusion/core/fields.hpp"
+#include "posefusion/config/fields.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Settings of the min-cut segmenter.
 struct SegmentationConfig {
@@ -41,4 +41,4 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
             "rim around the mask that is removed from the depth too, at 640 pixels width");
 }
 
-}  // namespace posefusion
+}  // namespace pf

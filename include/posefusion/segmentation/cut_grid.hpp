@@ -11,7 +11,7 @@
 #include "posefusion/segmentation/graph_cut.hpp"
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Cuts the grid: each cell a vertex with edges to its eight neighbours. Keeps its memory.
 class GridCutter {
@@ -37,6 +37,6 @@ class GridCutter {
 
 /// Takes the label away from regions without an anchor.
 void keepAnchoredRegions(const SceneGrid& grid, const std::vector<Body>& bodies,
-                          std::vector<std::uint8_t>& labels);
+                         std::vector<std::uint8_t>& labels);
 
-}  // namespace posefusion
+}  // namespace pf

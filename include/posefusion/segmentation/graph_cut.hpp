@@ -3,7 +3,7 @@
 
 #include <memory>
 
-namespace posefusion {
+namespace pf {
 
 /// Minimum cut of a graph between person and background (Boykov and Kolmogorov's algorithm as
 /// OpenCV ships it, which is wrapped here and nowhere else).
@@ -14,8 +14,8 @@ class GraphCut {
 
   /// Starts a new graph; the numbers are only a hint for the memory.
   void begin(int nodes, int edges);
-  /// Adds a node and returns its number, counted from 0. The costs, >= 0, are paid when it ends on the
-  /// other side.
+  /// Adds a node and returns its number, counted from 0. The costs, >= 0, are paid when it ends on
+  /// the other side.
   int addNode(float person_weight, float background_weight);
   /// Adds an edge whose weight, >= 0, is paid when its ends are separated.
   void addEdge(int a, int b, float weight) { addEdge(a, b, weight, weight); }
@@ -29,4 +29,4 @@ class GraphCut {
   std::unique_ptr<Graph> graph_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

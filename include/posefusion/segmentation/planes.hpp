@@ -7,7 +7,7 @@
 
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Finds the cells of large planes (floor, walls, table tops): no person is so flat and so large.
 /// A plane is linear in inverse depth over the image, 1/z = a u + b v + c, where the noise of a
@@ -25,4 +25,4 @@ class PlaneFinder {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "posefusion/core/frame.hpp"
-#include "posefusion/map/model_view.hpp"
+#include "posefusion/frame/model_view.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/config.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A frame without its people.
 struct Segmentation {
@@ -21,8 +21,8 @@ struct Segmentation {
   People people;         ///< as used: detected, or carried forward to this frame
 };
 
-/// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried forward
-/// between detections. Keeps the last mask and joints. Not thread safe.
+/// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried
+/// forward between detections. Keeps the last mask and joints. Not thread safe.
 class PeopleSegmenter {
  public:
   explicit PeopleSegmenter(const SegmentationConfig& config);
@@ -41,4 +41,4 @@ class PeopleSegmenter {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

@@ -8,29 +8,33 @@
 #include "posefusion/segmentation/appearance.hpp"
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A person as carried from frame to frame.
 struct PersonTrack {
-  Person person;          ///< joints in the newest frame
-  bool fresh = false;     ///< detected in the newest frame
-  double unseen = 0.0;    ///< frames since the last detection, fewer where the map confirms the person
-  bool in_map = false;    ///< the map holds the person by mistake: what it says there is not used
-  float depth_m = 0.0F;   ///< median depth in the last frame, 0 = not known yet
+  Person person;       ///< joints in the newest frame
+  bool fresh = false;  ///< detected in the newest frame
+  double unseen =
+      0.0;  ///< frames since the last detection, fewer where the map confirms the person
+  bool in_map = false;     ///< the map holds the person by mistake: what it says there is not used
+  float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
   std::vector<int> cells;  ///< the mask, as cells of the grid, moved to the newest frame
   ColourHistogram colour;  ///< of the person; total() is 0 while nothing is known
 };
 
-/// Moves people from the last frame into the next by sparse optical flow (Lucas and Kanade, pyramidal)
-/// of their joints and of samples of their masks: a joint follows its own flow where that agrees with
-/// the person's median, else the median.
+/// Moves people from the last frame into the next by sparse optical flow (Lucas and Kanade,
+/// pyramidal) of their joints and of samples of their masks: a joint follows its own flow where
+/// that agrees with the person's median, else the median.
 class TrackCarrier {
  public:
   /// Moves all tracks into `frame`; the last frame is the one of the previous call of remember().
   void carry(const RgbdFrame& frame, const SceneGrid& grid, std::vector<PersonTrack>& tracks);
   /// Keeps what the next carry() needs of this frame.
   void remember(const RgbdFrame& frame);
-  void forget() { last_.clear(); current_stamp_ns_ = -1; }
+  void forget() {
+    last_.clear();
+    current_stamp_ns_ = -1;
+  }
 
  private:
   void buildPyramid(const RgbdFrame& frame);
@@ -40,9 +44,9 @@ class TrackCarrier {
   float scale_ = 1.0F;  ///< pyramid pixels per frame pixel
 };
 
-/// Puts newly detected people in the place of the tracks they continue; the others become new tracks.
-/// A person continues the track that holds most of its joints, at least a third. Joints that the
-/// detector missed this time are kept from the track.
+/// Puts newly detected people in the place of the tracks they continue; the others become new
+/// tracks. A person continues the track that holds most of its joints, at least a third. Joints
+/// that the detector missed this time are kept from the track.
 void mergeDetections(const People& people, const SceneGrid& grid, std::vector<PersonTrack>& tracks);
 
-}  // namespace posefusion
+}  // namespace pf

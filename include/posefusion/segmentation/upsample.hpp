@@ -6,12 +6,12 @@
 
 #include "posefusion/segmentation/grid.hpp"
 
-namespace posefusion {
+namespace pf {
 
-/// Brings labels of cells (1 = person) to full resolution. A pixel in a block that is surrounded by one
-/// label takes it; else it takes the label of those neighbouring cells that are at its own depth
-/// (at its own colour where it has none), so that the mask ends on depth edges. `mask`: CV_8UC1,
-/// 255 = person.
+/// Brings labels of cells (1 = person) to full resolution. A pixel in a block that is surrounded by
+/// one label takes it; else it takes the label of those neighbouring cells that are at its own
+/// depth (at its own colour where it has none), so that the mask ends on depth edges. `mask`:
+/// CV_8UC1, 255 = person.
 void upsampleMask(const RgbdFrame& frame, const cv::Mat& depth_m, const SceneGrid& grid,
                   const std::vector<std::uint8_t>& labels, cv::Mat& mask);
 
@@ -19,4 +19,4 @@ void upsampleMask(const RgbdFrame& frame, const cv::Mat& depth_m, const SceneGri
 /// depth type): sensors mix the depths of a person and of the background along the edge.
 cv::Mat removeMasked(const cv::Mat& depth, const cv::Mat& mask, int margin_px);
 
-}  // namespace posefusion
+}  // namespace pf

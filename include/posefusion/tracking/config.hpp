@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "posefusion/core/fields.hpp"
+#include "posefusion/config/fields.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Settings of frame-to-model tracking.
 struct TrackingConfig {
-  double min_depth_m = 0.3;
-  double max_depth_m = 5.0;
-  int shrink = 2;
   double max_distance_m = 0.10;
   double max_normal_angle_rad = 0.7;
   double photometric_sigma = 12.0;
@@ -23,11 +20,6 @@ struct TrackingConfig {
 };
 
 inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
-  v.number("min_depth_m", c.min_depth_m, 0.01, 100.0, "nearer depth is not used");
-  v.number("max_depth_m", c.max_depth_m, 0.1, 100.0, "farther depth is not used");
-  v.integer("shrink", c.shrink, 1, 8,
-            "tracking and map work on images shrunk by this factor; every pixel still counts, each "
-            "shrunk pixel is the mean of its block");
   v.number("max_distance_m", c.max_distance_m, 1e-3, 10.0, "largest distance of a matched pair");
   v.number("max_normal_angle_rad", c.max_normal_angle_rad, 0.01, 3.14,
            "largest angle between the normals of a matched pair");
@@ -48,4 +40,4 @@ inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
             "untrusted frames in a row until tracking counts as lost");
 }
 
-}  // namespace posefusion
+}  // namespace pf

@@ -5,18 +5,18 @@
 #include <cstddef>
 #include <vector>
 
-#include "posefusion/map/model_view.hpp"
-#include "posefusion/tracking/working_frame.hpp"
+#include "posefusion/frame/model_view.hpp"
+#include "posefusion/frame/working_frame.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// Planes of one size: depth (m, 0 = nothing), unit normal, grey level, support (frames).
 struct ModelPlanes {
   cv::Mat depth_m, normal[3], intensity, support;
 };
 
-/// The pixels of a model view that show something, as structure of arrays in the view's camera frame,
-/// in the order of the image. Padded with invisible points to whole groups of kLanes.
+/// The pixels of a model view that show something, as structure of arrays in the view's camera
+/// frame, in the order of the image. Padded with invisible points to whole groups of kLanes.
 struct ModelPoints {
   static constexpr std::size_t kLanes = 16;
 
@@ -41,4 +41,4 @@ class ModelPyramid {
   std::array<ModelPlanes, kLevels> planes_;
 };
 
-}  // namespace posefusion
+}  // namespace pf

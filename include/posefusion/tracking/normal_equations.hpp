@@ -4,10 +4,10 @@
 #include <cstddef>
 
 #include "posefusion/core/se3.hpp"
+#include "posefusion/frame/working_frame.hpp"
 #include "posefusion/tracking/model_points.hpp"
-#include "posefusion/tracking/working_frame.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// How residuals are gated and weighted.
 struct TermSettings {
@@ -25,7 +25,8 @@ struct TermSettings {
 /// the frame's point at the pixel that q projects to (point to plane, Chen and Medioni 1992).
 /// Photometric residual: I(pixel of q) - I_model. Both have the Jacobian [a, q x a]: a = n for the
 /// first, a = gradient of I through the projection for the second. Each term is weighted by
-/// 1 / variance times Geman and McClure's robust weight 1 / (1 + x^2)^2 times the point's own weight.
+/// 1 / variance times Geman and McClure's robust weight 1 / (1 + x^2)^2 times the point's own
+/// weight.
 struct NormalEquations {
   double H[21] = {};
   double g[6] = {};
@@ -33,9 +34,9 @@ struct NormalEquations {
   double photometric_error = 0;  ///< sum of squared residuals of the photometric inliers
   double photometric_sum = 0;    ///< weighted sum of residuals, for the brightness offset
   double photometric_weight = 0;
-  double robust_error = 0;       ///< what is minimised
-  double candidates = 0;         ///< points that fall on a frame pixel with depth
-  double inliers = 0;            ///< of them within the gates and 3 standard deviations
+  double robust_error = 0;  ///< what is minimised
+  double candidates = 0;    ///< points that fall on a frame pixel with depth
+  double inliers = 0;       ///< of them within the gates and 3 standard deviations
   double photometric_inliers = 0;
 
   Matrix6d hessian() const;
@@ -47,4 +48,4 @@ NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel&
                                      const Eigen::Isometry3d& T_frame_model,
                                      const TermSettings& settings);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -6,7 +6,7 @@
 
 #include "posefusion/core/camera.hpp"
 
-namespace posefusion {
+namespace pf {
 
 /// A small grey image for rotation pre-alignment.
 struct SmallImage {
@@ -21,4 +21,4 @@ struct SmallImage {
 Eigen::Matrix3d alignRotation(const SmallImage& previous, const SmallImage& current,
                               const PinholeCamera& camera);
 
-}  // namespace posefusion
+}  // namespace pf

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cmath>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 sensor_msgs::CameraInfo infoFromFieldOfView(const StreamInfo& stream) {
   const double width = stream.mode.width, height = stream.mode.height;
@@ -88,4 +88,4 @@ sensor_msgs::CameraInfo CameraInfos::fallback(int width, int height, const std::
   return info;
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

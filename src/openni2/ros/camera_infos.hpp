@@ -11,7 +11,7 @@
 
 #include "posefusion_openni2/device.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Intrinsics of a camera without distortion, from its field of view.
 sensor_msgs::CameraInfo infoFromFieldOfView(const StreamInfo& stream);
@@ -41,4 +41,4 @@ class CameraInfos {
   std::set<std::pair<int, int>> warned_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -8,7 +8,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion_openni2/discovery.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr auto kStep = std::chrono::milliseconds(100);
@@ -219,4 +219,4 @@ void Driver::onFrame(const SensorFrame& frame, ClockMap& clock) {
   (frame.kind == StreamKind::color ? color_ : depth_).publish(frame, clock);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -18,7 +18,7 @@
 #include "posefusion_openni2/session.hpp"
 #include "stream_publisher.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Keeps a camera open and publishes it: looks for it, opens it, opens it again when it was
 /// unplugged or went silent. One thread owns the device; the others leave it requests.
@@ -78,4 +78,4 @@ class Driver {
   std::unique_ptr<ApiThread> thread_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -8,7 +8,7 @@
 #include "driver.hpp"
 #include "posefusion_ros/queue_keeper.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// posefusion/openni2_driver: parameters, services and dynamic_reconfigure of the driver.
 class DriverNodelet : public nodelet::Nodelet {
@@ -25,7 +25,7 @@ class DriverNodelet : public nodelet::Nodelet {
       record_ = own.advertiseService("record", &DriverNodelet::record, this);
       reconfigure_ = std::make_unique<Reconfigure>(own);
       reconfigure_->setCallback(
-          [this](const OpenNi2DriverConfig& config, std::uint32_t) { apply(config); });
+          [this](const posefusion::OpenNi2DriverConfig& config, std::uint32_t) { apply(config); });
       driver_->start();
     } catch (const std::exception& error) {
       NODELET_FATAL("The OpenNI2 driver stays idle: %s", error.what());
@@ -40,7 +40,7 @@ class DriverNodelet : public nodelet::Nodelet {
     driver_.reset();
   }
 
-  void apply(const OpenNi2DriverConfig& config) {
+  void apply(const posefusion::OpenNi2DriverConfig& config) {
     ExposureSettings exposure;
     exposure.auto_exposure = config.auto_exposure;
     exposure.auto_white_balance = config.auto_white_balance;
@@ -58,7 +58,7 @@ class DriverNodelet : public nodelet::Nodelet {
     return true;
   }
 
-  using Reconfigure = dynamic_reconfigure::Server<OpenNi2DriverConfig>;
+  using Reconfigure = dynamic_reconfigure::Server<posefusion::OpenNi2DriverConfig>;
 
   posefusion_ros::QueueKeeper queues_;
   std::unique_ptr<Driver> driver_;
@@ -66,6 +66,6 @@ class DriverNodelet : public nodelet::Nodelet {
   ros::ServiceServer record_;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2
 
-PLUGINLIB_EXPORT_CLASS(posefusion::openni2::DriverNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(pf::openni2::DriverNodelet, nodelet::Nodelet)

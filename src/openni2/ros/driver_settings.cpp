@@ -8,7 +8,7 @@
 
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 /// Reads parameters and remembers which ones there are.
@@ -80,4 +80,4 @@ DriverSettings readDriverSettings(const ros::NodeHandle& private_nh) {
   return settings;
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

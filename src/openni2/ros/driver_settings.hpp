@@ -7,7 +7,7 @@
 
 #include "posefusion_openni2/settings.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// Parameters of the driver that are fixed while it runs (private names; see docs/driver.md).
 struct DriverSettings {
@@ -25,4 +25,4 @@ struct DriverSettings {
 /// parameter, its value and what was expected.
 DriverSettings readDriverSettings(const ros::NodeHandle& private_nh);
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "driver_status.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -61,4 +61,4 @@ void report(const DriverStatus& status, diagnostic_updater::DiagnosticStatusWrap
   out.add("connections", status.connections);
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

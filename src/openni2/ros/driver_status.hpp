@@ -8,7 +8,7 @@
 
 #include "posefusion_openni2/device.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// One stream, as diagnostics show it.
 struct StreamStatus {
@@ -40,4 +40,4 @@ struct DriverStatus {
 /// Level, message and values.
 void report(const DriverStatus& status, diagnostic_updater::DiagnosticStatusWrapper& out);
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

@@ -8,7 +8,7 @@
 #include "driver.hpp"
 #include "posefusion/core/error.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 std::string timeText() {
@@ -80,4 +80,4 @@ void Driver::updateStream(StreamKind kind, StreamStatus& status, double seconds)
   status.latency_ms = (kind == StreamKind::color ? color_ : depth_).medianLatencyMs();
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

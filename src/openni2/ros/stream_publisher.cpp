@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 namespace {
 
 constexpr std::size_t kLatencies = 300;
@@ -94,4 +94,4 @@ double StreamPublisher::medianLatencyMs() const {
   return *middle;
 }
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

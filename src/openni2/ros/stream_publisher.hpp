@@ -13,7 +13,7 @@
 #include "posefusion_openni2/clock_map.hpp"
 #include "posefusion_openni2/frame.hpp"
 
-namespace posefusion::openni2 {
+namespace pf::openni2 {
 
 /// The message of a frame: one copy of its pixels.
 sensor_msgs::ImagePtr toImage(const SensorFrame& frame);
@@ -51,4 +51,4 @@ class StreamPublisher {
   std::size_t next_latency_ = 0;
 };
 
-}  // namespace posefusion::openni2
+}  // namespace pf::openni2

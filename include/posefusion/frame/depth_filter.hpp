@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "posefusion/core/camera.hpp"
+
+namespace pf {
+
+/// Depth images here are CV_32FC1 in metres, 0 = invalid. Every function writes into its last
+/// arguments, reusing their memory, and gives the same bits for any number of threads. Means are
+/// taken of the inverse depth: planes are linear in it, so that leaning surfaces are not moved, and
+/// the noise of a structured-light sensor is even in it.
+
+/// Each block of factor x factor pixels becomes the mean of those of its valid pixels that lie on
+/// the nearest surface in it: silhouettes are kept, noise falls.
+void shrinkDepth(const cv::Mat& depth_m, int factor, cv::Mat& small_m);
+
+/// Edge-preserving smoothing over 7x7 pixels. The range kernel is Tukey's biweight with a width
+/// that follows the sensor noise (depth_noise.hpp), so that a step of the scene survives at any
+/// distance.
+void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m);
+
+/// Unit normals towards the camera by central differences; all three 0 where a neighbour is missing
+/// or lies on another surface.
+void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, cv::Mat& normal_x,
+                    cv::Mat& normal_y, cv::Mat& normal_z);
+
+/// Grey levels 0..255 (CV_32FC1) of an R G B image, each pixel the mean of a factor x factor block.
+void shrinkToIntensity(const cv::Mat& color, int factor, cv::Mat& intensity);
+
+/// Mean of 2x2 blocks of a CV_32FC1 image.
+void halveIntensity(const cv::Mat& intensity, cv::Mat& small);
+
+}  // namespace pf

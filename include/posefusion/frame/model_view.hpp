@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include "posefusion/core/camera.hpp"
+
+namespace pf {
+
+/// The map seen from a pose. All images have the camera's size; where depth is 0 nothing was hit.
+struct ModelView {
+  PinholeCamera camera;
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing
+  cv::Mat normal_x;   ///< CV_32FC1, camera frame, unit length, towards the camera
+  cv::Mat normal_y;   ///< CV_32FC1
+  cv::Mat normal_z;   ///< CV_32FC1
+  cv::Mat intensity;  ///< CV_32FC1, 0..255
+  cv::Mat support;    ///< CV_32FC1, confidence of the surfel: frames that supported it
+  cv::Mat color;      ///< CV_8UC3 R G B; empty unless asked for
+  cv::Mat stable;     ///< CV_8UC1, 1 = a stable surfel; empty: not known
+  cv::Mat index;      ///< CV_32SC1, surfel in the map, -1 = nothing
+
+  bool empty() const { return depth_m.empty(); }
+};
+
+}  // namespace pf

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "posefusion/core/stopwatch.hpp"
+#include "posefusion/core/trajectory.hpp"
+#include "posefusion/evaluation/map_check.hpp"
+#include "posefusion/evaluation/metrics.hpp"
+#include "posefusion/map/surfel_map.hpp"
+#include "posefusion/run/people_picture.hpp"
+#include "posefusion/run/run_statistics.hpp"
+
+namespace pf {
+
+/// Accuracy of a run against the truth.
+struct RunErrors {
+  ErrorStatistics ate_m;
+  RelativeError per_second;
+};
+
+/// Collects what a run gives, and writes it into a folder.
+class RunReport {
+ public:
+  explicit RunReport(const Config& config) : config_(config) {}
+
+  /// Each frame, in order. The clock of the run starts with the object and stops with the last
+  /// frame.
+  void add(const ProcessedFrame& frame);
+
+  void setTruth(const Trajectory& truth) { truth_ = truth; }
+
+  /// Reported as `depth_median_difference_m`.
+  void setDepthCheck(const DepthCheck& check) { depth_difference_m_ = check.medianM(); }
+
+  const RunStatistics& statistics() const { return statistics_; }
+  /// Poses of the fused frames.
+  const Trajectory& trajectory() const { return trajectory_; }
+  double framesPerSecond() const;
+  /// Nothing without truth, or when fewer than three poses have a true one.
+  std::optional<RunErrors> errors() const;
+
+  /// trajectory.txt (TUM format, camera poses of the fused frames), map.ply, summary.json, map.png
+  /// and people.png. Throws InputError naming the file.
+  void write(const std::string& folder, const SurfelMap& map) const;
+
+  /// A few lines for people.
+  std::string table() const;
+
+ private:
+  std::string summary(std::size_t surfels) const;
+
+  Config config_;
+  RunStatistics statistics_;
+  Trajectory trajectory_;
+  Trajectory truth_;
+  PeopleStrip strip_;
+  PinholeCamera camera_;
+  std::optional<double> depth_difference_m_;
+  Stopwatch watch_;
+  double seconds_ = 0;
+};
+
+}  // namespace pf

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "posefusion/slam/pipeline.hpp"
+
+namespace pf {
+
+/// Frames of a run. Each is counted once besides `read`.
+struct FrameCounts {
+  std::size_t read = 0;     ///< all frames that the input gave
+  std::size_t bad = 0;      ///< unreadable, of another size, stamps going back
+  std::size_t blurred = 0;  ///< dropped by the gate
+  std::size_t tracked = 0;  ///< tracked and fused
+  std::size_t lost = 0;     ///< offered to tracking and not fused
+};
+
+/// What the masks of a run cover.
+struct MaskCounts {
+  std::size_t frames = 0;     ///< sharp frames
+  std::size_t with_mask = 0;  ///< of them with a pixel of a person
+  double mean_part = 0;       ///< mean part of the pixels masked, over the sharp frames
+};
+
+/// Times of one stage over a run.
+struct StageTime {
+  double median_ms = 0;
+  double p95_ms = 0;
+};
+
+/// Counts and times of a run, frame by frame.
+class RunStatistics {
+ public:
+  void add(const ProcessedFrame& frame);
+
+  const FrameCounts& frames() const { return frames_; }
+  MaskCounts masks() const;
+
+  /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion, and
+  /// tracking_and_fusion, their sum.
+  std::map<std::string, StageTime> stages() const;
+
+ private:
+  void addMask(const ProcessedFrame& frame);
+  void addTimes(const ProcessedFrame& frame);
+
+  FrameCounts frames_;
+  MaskCounts masks_;
+  double mask_part_sum_ = 0;
+  std::map<std::string, std::vector<double>> times_ms_;
+};
+
+/// Largest memory the process has had, megabytes.
+double peakMemoryMb();
+
+}  // namespace pf

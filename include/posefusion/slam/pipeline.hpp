@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "posefusion/blur/gate.hpp"
+#include "posefusion/pose/detector.hpp"
+#include "posefusion/segmentation/segmenter.hpp"
+#include "posefusion/slam/config.hpp"
+#include "posefusion/slam/mapper.hpp"
+
+namespace pf {
+
+/// A frame after the stages that know no map, ready for the others.
+struct SeenFrame {
+  RgbdFrame frame;
+  BlurScore blur;
+  People people;
+  double gate_ms = 0;
+  double pose_ms = 0;
+};
+
+/// A frame after the whole chain.
+struct ProcessedFrame {
+  SeenFrame seen;
+  Segmentation segmentation;
+  double segmentation_ms = 0;
+  FrameStatus status;
+};
+
+/// The whole chain, free of ROS: the offline runner, the tests and the benchmarks. `see` and `map`
+/// keep apart state and may run on two threads, each in the order of the frames; the result is that
+/// of process() in one thread, to the bit.
+class Pipeline {
+ public:
+  Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector);
+
+  /// Rectification, blur gate, pose detection.
+  SeenFrame see(const RgbdFrame& frame);
+
+  /// Segmentation against the current model, tracking, fusion. A blurred frame is reported as such.
+  ProcessedFrame map(SeenFrame seen);
+
+  ProcessedFrame process(const RgbdFrame& frame) { return map(see(frame)); }
+
+  const Mapper& mapper() const { return mapper_; }
+
+ private:
+  Config config_;
+  Rectifier rectifier_;
+  BlurGate gate_;
+  std::unique_ptr<PoseDetector> detector_;
+  PeopleSegmenter segmenter_;
+  Mapper mapper_;
+};
+
+}  // namespace pf

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/frame/working_frame.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+#include "posefusion/frame/depth_filter.hpp"
+
+namespace pf {
+namespace {
+
+/// 255 where no pixel of the block belongs to a person.
+void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
+  still.create(size, CV_8UC1);
+  if (mask.empty()) {
+    still.setTo(255);
+    return;
+  }
+  cv::resize(mask, still, size, 0, 0, cv::INTER_AREA);
+  cv::compare(still, 0, still, cv::CMP_EQ);
+}
+
+}  // namespace
+
+void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config) {
+  camera = frame.camera.shrunk(config.shrink);
+  const cv::Size size(camera.width, camera.height);
+  depthInMetres(frame, config.min_depth_m, config.max_depth_m, full_depth_m_);
+  shrinkDepth(full_depth_m_, config.shrink, depth_m);
+  valid_pixels = cv::countNonZero(depth_m);
+  cv::resize(frame.color, color, size, 0, 0, cv::INTER_AREA);
+
+  FrameLevel& finest = levels[0];
+  finest.camera = camera;
+  smoothDepth(depth_m, smooth_m_);
+  computeNormals(smooth_m_, camera, finest.normal_x, finest.normal_y, finest.normal_z);
+  finest.depth_m = depth_m;
+  shrinkToIntensity(frame.color, config.shrink, finest.intensity);
+  shrinkStill(mask, size, finest.still);
+  for (int i = 1; i < kLevels; ++i) {
+    const FrameLevel& finer = levels[i - 1];
+    levels[i].camera = finer.camera.shrunk(2);
+    shrinkDepth(finer.depth_m, 2, levels[i].depth_m);
+    halveIntensity(finer.intensity, levels[i].intensity);
+    shrinkStill(mask, levels[i].intensity.size(), levels[i].still);
+  }
+  for (int i = 1; i < kLevels; ++i) {
+    FrameLevel& level = levels[i];
+    computeNormals(level.depth_m, level.camera, level.normal_x, level.normal_y, level.normal_z);
+  }
+}
+
+}  // namespace pf

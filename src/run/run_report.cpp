@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/run/run_report.hpp"
+
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/images.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/map_picture.hpp"
+
+namespace pf {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// "tracking.max_distance_m" = "0.1" becomes {"tracking": {"max_distance_m": 0.1}}.
+ordered_json configurationJson(const Config& config) {
+  ordered_json out;
+  for (const auto& [key, text] : listFields(config)) {
+    const auto value = ordered_json::parse(text, nullptr, false);
+    const bool literal = value.is_number() || value.is_boolean();
+    const auto dot = key.find('.');
+    out[key.substr(0, dot)][key.substr(dot + 1)] = literal ? value : ordered_json(text);
+  }
+  return out;
+}
+
+ordered_json framesJson(const FrameCounts& f) {
+  return {{"read", f.read},
+          {"bad", f.bad},
+          {"blurred", f.blurred},
+          {"tracked", f.tracked},
+          {"lost", f.lost}};
+}
+
+std::string fixed(double value, int decimals) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(decimals) << value;
+  return out.str();
+}
+
+}  // namespace
+
+void RunReport::add(const ProcessedFrame& frame) {
+  seconds_ += 1e-3 * watch_.lapMs();
+  statistics_.add(frame);
+  strip_.add(frame);
+  if (frame.status.outcome != FrameOutcome::fused) return;
+  camera_ = frame.seen.frame.camera;
+  trajectory_.push_back({frame.status.stamp_ns, frame.status.T_map_camera});
+}
+
+double RunReport::framesPerSecond() const {
+  return seconds_ > 0 ? static_cast<double>(statistics_.frames().read) / seconds_ : 0.0;
+}
+
+std::optional<RunErrors> RunReport::errors() const {
+  const auto pairs = matchPoses(truth_, trajectory_);
+  if (pairs.size() < 3) return std::nullopt;
+  RunErrors errors;
+  errors.ate_m = absoluteError(pairs, align(pairs, false));
+  errors.per_second = relativeErrorPerSecond(truth_, trajectory_);
+  return errors;
+}
+
+std::string RunReport::summary(std::size_t surfels) const {
+  const MaskCounts masks = statistics_.masks();
+  ordered_json out;
+  out["version"] = POSEFUSION_VERSION;
+  out["frames"] = framesJson(statistics_.frames());
+  out["masks"] = {{"frames", masks.with_mask}, {"mean_part", masks.mean_part}};
+  out["surfels"] = surfels;
+  out["frames_per_second"] = framesPerSecond();
+  out["peak_memory_mb"] = peakMemoryMb();
+  if (const auto e = errors()) {
+    out["ate_rmse_m"] = e->ate_m.rmse;
+    if (e->per_second.translation_m.count > 0) {
+      out["rpe_trans_m_per_s"] = e->per_second.translation_m.rmse;
+      out["rpe_rot_deg_per_s"] = e->per_second.rotation_deg.rmse;
+    }
+  }
+  if (depth_difference_m_) out["depth_median_difference_m"] = *depth_difference_m_;
+  for (const auto& [name, time] : statistics_.stages()) {
+    out["stages"][name] = {{"median_ms", time.median_ms}, {"p95_ms", time.p95_ms}};
+  }
+  out["configuration"] = configurationJson(config_);
+  return out.dump(2) + "\n";
+}
+
+void RunReport::write(const std::string& folder, const SurfelMap& map) const {
+  saveTrajectory(folder + "/trajectory.txt", trajectory_,
+                 "pose of the camera (optical frame: z forward, x right, y down) in the map");
+  const std::size_t surfels = saveMap(folder + "/map.ply", map);
+  AtomicFile file(folder + "/summary.json");
+  file.stream() << summary(surfels);
+  file.commit();
+  const cv::Mat picture = drawMap(map, trajectory_, camera_);
+  if (!picture.empty()) savePng(folder + "/map.png", picture);
+  const cv::Mat strip = strip_.draw();
+  if (!strip.empty()) savePng(folder + "/people.png", strip);
+}
+
+std::string RunReport::table() const {
+  const FrameCounts& f = statistics_.frames();
+  std::ostringstream out;
+  out << "frames   " << f.read << " read, " << f.tracked << " tracked, " << f.lost << " lost, "
+      << f.blurred << " blurred, " << f.bad << " bad\n";
+  out << "speed    " << fixed(framesPerSecond(), 1) << " frames per second\n";
+  for (const auto& [name, time] : statistics_.stages()) {
+    out << "         " << std::left << std::setw(20) << name << std::right << std::setw(7)
+        << fixed(time.median_ms, 1) << " ms median" << std::setw(7) << fixed(time.p95_ms, 1)
+        << " ms 95 %\n";
+  }
+  if (const auto e = errors()) {
+    out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count
+        << " poses\n";
+    out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
+        << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";
+  }
+  if (depth_difference_m_) {
+    out << "depth    " << fixed(1e3 * *depth_difference_m_, 2) << " mm median against the map\n";
+  }
+  return out.str();
+}
+
+}  // namespace pf

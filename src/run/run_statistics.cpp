@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/run/run_statistics.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace pf {
+namespace {
+
+StageTime summarise(std::vector<double> times) {
+  if (times.empty()) return {};
+  std::sort(times.begin(), times.end());
+  return {times[times.size() / 2], times[times.size() * 95 / 100]};
+}
+
+}  // namespace
+
+void RunStatistics::add(const ProcessedFrame& frame) {
+  ++frames_.read;
+  switch (frame.status.outcome) {
+    case FrameOutcome::bad_input:
+      ++frames_.bad;
+      return;
+    case FrameOutcome::blurred:
+      ++frames_.blurred;
+      times_ms_["gate"].push_back(frame.seen.gate_ms);
+      return;
+    case FrameOutcome::fused:
+      ++frames_.tracked;
+      break;
+    default:
+      ++frames_.lost;
+  }
+  addMask(frame);
+  addTimes(frame);
+}
+
+void RunStatistics::addMask(const ProcessedFrame& frame) {
+  ++masks_.frames;
+  const cv::Mat& mask = frame.segmentation.mask;
+  const int pixels = mask.empty() ? 0 : cv::countNonZero(mask);
+  if (pixels == 0) return;
+  ++masks_.with_mask;
+  mask_part_sum_ += static_cast<double>(pixels) / static_cast<double>(mask.total());
+}
+
+void RunStatistics::addTimes(const ProcessedFrame& frame) {
+  times_ms_["gate"].push_back(frame.seen.gate_ms);
+  if (frame.seen.people.detected) times_ms_["pose"].push_back(frame.seen.pose_ms);
+  times_ms_["segmentation"].push_back(frame.segmentation_ms);
+  times_ms_["tracking"].push_back(frame.status.tracking_ms);
+  times_ms_["fusion"].push_back(frame.status.fusion_ms);
+  times_ms_["tracking_and_fusion"].push_back(frame.status.tracking_ms + frame.status.fusion_ms);
+}
+
+MaskCounts RunStatistics::masks() const {
+  MaskCounts masks = masks_;
+  if (masks.frames > 0) masks.mean_part = mask_part_sum_ / static_cast<double>(masks.frames);
+  return masks;
+}
+
+std::map<std::string, StageTime> RunStatistics::stages() const {
+  std::map<std::string, StageTime> stages;
+  for (const auto& [name, times] : times_ms_) stages[name] = summarise(times);
+  return stages;
+}
+
+double peakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts kilobytes
+}
+
+}  // namespace pf

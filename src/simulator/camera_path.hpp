@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pf::simulator {
+
+/// Something of note that happened to the camera.
+struct Event {
+  std::string kind;  ///< "fall"
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
+/// Where the camera is at any time. Thread safe.
+class CameraPath {
+ public:
+  virtual ~CameraPath() = default;
+  virtual Eigen::Isometry3d at(double time_s) const = 0;
+  virtual std::vector<Event> events() const { return {}; }
+};
+
+/// Camera at `eye` that looks at `target`, upright (optical frame: z forward, y down).
+Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
+
+/// Hand-held patterns of the TUM benchmark about a first view.
+struct HandHeld {
+  std::string pattern = "static";  ///< static, xyz, rpy, halfsphere
+  Eigen::Vector3d eye{0.0, 0.0, 1.3};
+  Eigen::Vector3d target{2.0, 0.0, 1.1};
+  double reach_m = 0.25;    ///< xyz: to either side
+  double swing_rad = 0.30;  ///< rpy
+  double period_s = 4.0;    ///< of one swing
+  double shake = 1.0;       ///< tremble of the hand, 1 = usual, 0 = a tripod
+};
+
+/// A fall: when, and how: "forward" face down, "backward" to the ceiling, "sideways".
+struct Fall {
+  double at_s = 0.0;
+  std::string direction = "forward";
+  double lie_s = 3.0;
+  double skip_m = 1.0;    ///< it gets up so far along its way
+  double turn_rad = 0.8;  ///< and looks elsewhere by so much
+};
+
+/// A biped that walks along waypoints, with its falls.
+struct Robot {
+  std::vector<Eigen::Vector2d> waypoints;
+  bool repeats = true;     ///< starts again at the first waypoint
+  bool turns_body = true;  ///< faces where it goes; otherwise looks at `target`
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  double height_m = 1.40;
+  double pitch_rad = 0.12;  ///< downwards
+  double speed_m_s = 0.28;
+  double turn_rad_s = 0.5;
+  double step_s = 0.75;
+  double sway_m = 0.022;
+  double bounce_m = 0.008;
+  double jerk = 1.0;     ///< of the heel strike, 1 = usual
+  double pause_s = 0.6;  ///< at every waypoint
+  std::vector<Fall> falls;
+};
+
+std::unique_ptr<CameraPath> makeHandHeld(const HandHeld& spec, std::uint32_t seed);
+std::unique_ptr<CameraPath> makeRobot(const Robot& spec, double duration_s, std::uint32_t seed);
+
+/// Irregular movement in about [-1, 1]: sines from `low_hz` to `high_hz`, slower ones larger.
+double tremble(double time_s, double low_hz, double high_hz, std::uint32_t seed);
+
+}  // namespace pf::simulator

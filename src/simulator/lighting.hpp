@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulator/posed_people.hpp"
+#include "simulator/raycaster.hpp"
+#include "simulator/world.hpp"
+
+namespace pf::simulator {
+
+/// Light that comes in at a point of the air from the six directions +x -x +y -y +z -z, as the
+/// radiance of a white surface that faces there, lamps left out.
+using AmbientCube = std::array<Eigen::Vector3f, 6>;
+
+/// The people's surfaces at one moment, world.
+struct PeopleSurface {
+  std::vector<std::vector<Eigen::Vector3f>> positions, normals;  ///< [person][vertex]
+  std::vector<Eigen::Vector2f> places;                           ///< where they stand
+};
+
+/// Light on white surfaces at all vertices during one frame, as radiance.
+struct FrameLight {
+  std::vector<Eigen::Vector3f> world;                ///< [vertex], with the people's shadows
+  std::vector<std::vector<Eigen::Vector3f>> people;  ///< [person][vertex]
+  std::vector<std::uint32_t> shaded;                 ///< vertices of the world near people
+};
+
+/// Light at the vertices of the static world: direct light of each lamp with soft shadows, and
+/// what the surfaces throw at each other (radiosity gathered with rays, two bounces). Worked out
+/// once, when it is made; from then on thread safe. People take light away from the vertices near
+/// them, frame by frame.
+class Lighting {
+ public:
+  Lighting(const World& world, const RayCaster& caster);
+
+  /// Light of a frame seen from `eye` (world, metres): on the people where they may be seen from
+  /// there, and on the world with the shadows of those near. `people` cast them. `light` may be
+  /// that of another frame.
+  void illuminate(const PeopleSurface& surface, const PosedPeople& people,
+                  const Eigen::Vector3f& eye, FrameLight& light) const;
+
+ private:
+  void castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
+                   FrameLight& light) const;
+  /// The share of a lamp's light that people take from up to 16 vertices of the world.
+  std::array<float, 16> shadowed(const PosedPeople& people, const std::uint32_t* vertices,
+                                 std::size_t count, std::size_t lamp) const;
+  /// Light on up to 16 points of a person: lamps with shadows, then the rest by the nearest cubes.
+  struct Skin {
+    std::size_t count = 0;
+    const Eigen::Vector3f* positions = nullptr;
+    const Eigen::Vector3f* normals = nullptr;
+    const float* openness = nullptr;
+  };
+  void light(const Skin& skin, const PosedPeople& people, const Eigen::Vector3f& eye,
+             Eigen::Vector3f* out) const;
+  Eigen::Vector3f ambient(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const;
+  void gatherDirect();
+  void gatherIndirect(int bounce);
+  void smoothPatches(std::vector<Eigen::Vector3f>& light) const;
+  void fillCubes();
+  AmbientCube cubeAt(const Eigen::Vector3f& position) const;
+  Eigen::Vector3f reflected(const RTCRayHit& hit) const;
+  void shade(std::size_t vertex);
+
+  const World& world_;
+  const RayCaster& caster_;
+  std::vector<float> direct_;  ///< [vertex][lamp], radiance of a white surface for a unit lamp
+  std::vector<Eigen::Vector3f> indirect_;
+  std::vector<Eigen::Vector3f> light_;  ///< at the vertices, without people
+  Eigen::Vector3f cubes_from_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3i cubes_ = Eigen::Vector3i::Zero();
+  std::vector<AmbientCube> cube_;
+};
+
+/// Radiance of a white surface at `position` facing `normal` lit by a unit lamp, shadows left out.
+float lampFactor(const AreaLight& lamp, const Eigen::Vector3f& on_lamp,
+                 const Eigen::Vector3f& position, const Eigen::Vector3f& normal);
+
+/// The i-th of 16 points spread over a lamp, turned by `turn`.
+Eigen::Vector3f lampPoint(const AreaLight& lamp, std::uint32_t i, std::uint32_t turn);
+
+}  // namespace pf::simulator

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "simulator/outfit.hpp"
+#include "simulator/rig.hpp"
+
+namespace pf::simulator {
+
+/// One thing a person does. Walking finds its own way round the furniture.
+struct Action {
+  enum class Kind { walk, stand, talk, sit, reach, crouch };
+  Kind kind = Kind::stand;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< walk: goal; sit: seat; reach: for the hand
+  double yaw_rad = 0.0;                            ///< sit, stand, talk: facing there (world)
+  bool turns = false;                              ///< whether yaw_rad is given
+  double for_s = 2.0;                              ///< all but walk
+  double speed_m_s = 1.0;                          ///< walk
+  double seat_m = 0.45;                            ///< height of the seat
+  bool carries = false;                            ///< walk: with a box in both hands
+  bool gestures = false;                           ///< sit: hands talk too
+};
+
+/// A person of a scene file.
+struct PersonSpec {
+  std::string name;
+  Build build;
+  Outfit outfit;
+  Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+  std::vector<Action> script;  ///< empty: stands
+  bool repeats = true;
+  double delay_s = 0.0;  ///< before the first action
+};
+
+}  // namespace pf::simulator

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <future>
+
+#include "simulator/camera_path.hpp"
+#include "simulator/crowd.hpp"
+#include "simulator/depth_sensor.hpp"
+#include "simulator/renderer.hpp"
+#include "simulator/simulation.hpp"
+
+namespace pf::simulator {
+
+/// A view at a moment of the frame, 0..1.
+ViewSample viewAt(const Eigen::Isometry3d& T_world_camera, double time);
+
+/// All that a simulation holds, and what a frame is put together from.
+struct Simulation::State {
+  explicit State(const Scenario& s);
+
+  /// When a frame is taken (seconds of the scenario): the middle of the colour picture, the depth
+  /// picture, and from when to when the shutter is open.
+  struct Moments {
+    int index = -1;
+    Exposure exposure;
+    double color = 0.0, depth = 0.0, first = 0.0, last = 0.0;
+
+    double within(double time) const { return (time - first) / (last - first); }
+  };
+  Moments momentsOf(int index, const Exposure& exposure) const;
+  bool isDropped(int index) const;
+  double smearOf(const Moments& m) const;
+  double limbSmearOf(const Moments& m) const;  ///< of the people's hands and feet, at the most
+  int samplesFor(double smear_px) const;
+  Shutter shutterFor(const Moments& m, int samples) const;
+
+  /// A frame about to be taken: its people posed and lit.
+  struct Shot {
+    Shot(const RayCaster& world, const std::vector<Avatar>& people, const ColorConfig& config)
+        : in_color(world, people, config.motion_blur || config.rolling_shutter_ms > 0.0 ? 2 : 1),
+          in_depth(world, people, 1) {}
+
+    Moments moments;
+    PosedPeople in_color, in_depth;
+    PeopleSurface surface;
+    FrameLight light;
+  };
+  /// The shot of this frame: the one prepared in the background, or prepared now.
+  Shot& take(int index);
+  /// Begins to prepare a shot while that of take() is drawn. Its exposure is that of now, so it
+  /// answers to the pictures up to the last but one, as a camera's does.
+  void prepareInBackground(int index);
+  void forgetPrepared();
+  void prepare(Shot& shot, const Moments& m) const;
+  Postures posturesAt(double time) const;
+
+  /// Colour, depth and truth of the shot.
+  void draw(const Shot& shot, SimulatedFrame& out);
+  void observePeople(const Moments& m, SimulatedFrame& out) const;
+
+  Scenario scenario;
+  World world;
+  std::vector<Avatar> people;
+  RayCaster caster;
+  Lighting lighting;
+  std::unique_ptr<CameraPath> path;
+  Crowd crowd;
+  Renderer renderer;
+  ColorSensor color_sensor;
+  AutoExposure exposure;
+  std::array<Shot, 2> shots;
+  std::size_t current = 0;
+  cv::Mat radiance;
+  DepthView view;
+  std::future<void> preparing;  // last: ends before what it works on
+};
+
+}  // namespace pf::simulator

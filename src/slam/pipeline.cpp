@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/pipeline.hpp"
+
+#include <utility>
+
+#include "posefusion/core/stopwatch.hpp"
+
+namespace pf {
+
+Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
+    : config_(config),
+      gate_(config.blur),
+      detector_(std::move(detector)),
+      segmenter_(config.segmentation),
+      mapper_(config) {}
+
+SeenFrame Pipeline::see(const RgbdFrame& frame) {
+  SeenFrame seen;
+  if (!defectOf(frame).empty()) {
+    seen.frame = frame;
+    return seen;
+  }
+  Stopwatch watch;
+  seen.frame = rectifier_.rectify(frame);
+  seen.blur = gate_.judge(scoreBlur(seen.frame.color));
+  seen.gate_ms = watch.lapMs();
+  seen.people.stamp_ns = frame.stamp_ns;
+  if (seen.blur.sharp) seen.people = detector_->detect(seen.frame);
+  seen.pose_ms = watch.lapMs();
+  return seen;
+}
+
+ProcessedFrame Pipeline::map(SeenFrame seen) {
+  ProcessedFrame out;
+  out.seen = std::move(seen);
+  const RgbdFrame& frame = out.seen.frame;
+  if (!defectOf(frame).empty() || !out.seen.blur.sharp) {
+    out.status = mapper_.skip(
+        frame.stamp_ns, out.seen.blur.sharp ? FrameOutcome::bad_input : FrameOutcome::blurred);
+    out.status.detail = defectOf(frame);
+    return out;
+  }
+  Stopwatch watch;
+  const ModelView& view = mapper_.view();
+  out.segmentation = segmenter_.segment(frame, out.seen.people, view.empty() ? nullptr : &view);
+  out.segmentation_ms = watch.lapMs();
+  RgbdFrame still = frame;
+  still.depth = out.segmentation.static_depth;
+  out.status = mapper_.process(still, out.segmentation.mask);
+  return out;
+}
+
+}  // namespace pf
