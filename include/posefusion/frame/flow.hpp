@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "posefusion/core/frame.hpp"
+
+namespace pf {
+
+/// Corners of one frame found again in the next, in pixels of the full image.
+struct SparseFlow {
+  std::int64_t from_ns = 0;  ///< stamp of the earlier frame
+  std::int64_t to_ns = 0;    ///< stamp of the later frame
+  std::vector<cv::Point2f> before, after;
+
+  bool empty() const { return before.empty(); }
+};
+
+/// Points followed from the last frame into the newest one.
+struct FollowedPoints {
+  std::vector<cv::Point2f> after;   ///< in the order of the question
+  std::vector<std::uint8_t> found;  ///< 1 where the point was found again
+};
+
+/// Sparse optical flow between successive frames (pyramidal Lucas and Kanade; Bouguet 2001) on
+/// half-size grey images: of corners (Shi and Tomasi 1994), which tell how the camera moved, and of
+/// any other points, which tell how people did. The images are prepared once for both. Not thread
+/// safe.
+class FlowTracker {
+ public:
+  /// Takes in the next frame and follows the corners of the one before; a corner counts only if it
+  /// comes back when followed the other way. Empty for the first frame and after a change of size.
+  const SparseFlow& advance(const RgbdFrame& frame);
+
+  /// Follows points (pixels of the full image) from the frame before into the newest one.
+  FollowedPoints follow(const std::vector<cv::Point2f>& before) const;
+
+  void reset();
+
+ private:
+  void findCorners();
+
+  std::vector<cv::Mat> last_, newest_;  // pyramids
+  std::vector<cv::Point2f> corners_;    // of the newest frame, pixels of its pyramid
+  SparseFlow flow_;
+  float scale_ = 1.0F;  // pyramid pixels per frame pixel
+  bool comparable_ = false;
+  std::int64_t newest_ns_ = 0;
+  cv::Mat small_, grey_;
+};
+
+}  // namespace pf

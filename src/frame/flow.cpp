@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/frame/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace pf {
+namespace {
+
+constexpr int kFlowWidth = 320;  // pixels of the images that flow is measured on
+constexpr int kPyramidLevels = 3;
+constexpr int kMaxCorners = 300;
+constexpr double kCornerQuality = 0.003;  // part of the best corner's strength
+constexpr double kCornerSpacing_px = 7.0;
+constexpr float kMaxReturnError_px = 0.7F;  // forth and back
+const cv::Size kWindow(13, 13);
+
+cv::TermCriteria stop() { return {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 12, 0.02}; }
+
+/// Follows points (pyramid pixels) between two pyramids.
+void follow(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
+            const std::vector<cv::Point2f>& before, std::vector<cv::Point2f>& after,
+            std::vector<std::uint8_t>& found) {
+  cv::calcOpticalFlowPyrLK(from, to, before, after, found, cv::noArray(), kWindow, kPyramidLevels,
+                           stop());
+}
+
+}  // namespace
+
+const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
+  last_.swap(newest_);
+  const int width = std::min(kFlowWidth, frame.color.cols);
+  scale_ = static_cast<float>(width) / static_cast<float>(frame.color.cols);
+  const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * scale_)));
+  cv::resize(frame.color, small_, {width, height}, 0, 0, cv::INTER_AREA);
+  cv::cvtColor(small_, grey_, cv::COLOR_RGB2GRAY);
+  newest_.clear();
+  cv::buildOpticalFlowPyramid(grey_, newest_, kWindow, kPyramidLevels);
+  comparable_ = !last_.empty() && last_[0].size() == newest_[0].size();
+  flow_.before.clear();
+  flow_.after.clear();
+  flow_.from_ns = newest_ns_;
+  flow_.to_ns = newest_ns_ = frame.stamp_ns;
+  if (comparable_ && !corners_.empty()) {
+    std::vector<cv::Point2f> there, back;
+    std::vector<std::uint8_t> found, returned;
+    pf::follow(last_, newest_, corners_, there, found);
+    pf::follow(newest_, last_, there, back, returned);
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const cv::Point2f error = back[i] - corners_[i];
+      if (!found[i] || !returned[i] || std::hypot(error.x, error.y) > kMaxReturnError_px) continue;
+      flow_.before.push_back(corners_[i] / scale_);
+      flow_.after.push_back(there[i] / scale_);
+    }
+  }
+  findCorners();
+  return flow_;
+}
+
+FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const {
+  FollowedPoints points{before, std::vector<std::uint8_t>(before.size(), 0)};
+  if (!comparable_ || before.empty()) return points;
+  std::vector<cv::Point2f> scaled(before);
+  for (cv::Point2f& p : scaled) p *= scale_;
+  pf::follow(last_, newest_, scaled, points.after, points.found);
+  for (cv::Point2f& p : points.after) p /= scale_;
+  return points;
+}
+
+void FlowTracker::findCorners() {
+  corners_.clear();
+  cv::goodFeaturesToTrack(grey_, corners_, kMaxCorners, kCornerQuality, kCornerSpacing_px);
+}
+
+void FlowTracker::reset() { *this = FlowTracker(); }
+
+}  // namespace pf
