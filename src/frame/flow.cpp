@@ -11,11 +11,26 @@ namespace {
 
 constexpr int kFlowWidth = 320;  // pixels of the images that flow is measured on
 constexpr int kPyramidLevels = 3;
-constexpr int kMaxCorners = 300;
-constexpr double kCornerQuality = 0.003;  // part of the best corner's strength
+constexpr int kMaxCorners = 240;
+constexpr double kCornerQuality = 0.004;  // part of the best corner's strength
+// A window or a poster would take them all: cells of the image without a corner get some of their
+// own.
+constexpr int kCellColumns = 6, kCellRows = 5;
+constexpr int kCornersPerCell = 4;
+constexpr double kCellQuality = 0.1;  // part of the cell's best corner's strength
 constexpr double kCornerSpacing_px = 7.0;
 constexpr float kMaxReturnError_px = 0.7F;  // forth and back
 const cv::Size kWindow(13, 13);
+
+/// The centre of pixel 0 of an image shrunk by `scale` lies at (1 / scale - 1) / 2 of the large
+/// one.
+cv::Point2f toPyramid(const cv::Point2f& p, float scale) {
+  return {(p.x + 0.5F) * scale - 0.5F, (p.y + 0.5F) * scale - 0.5F};
+}
+
+cv::Point2f toImage(const cv::Point2f& p, float scale) {
+  return {(p.x + 0.5F) / scale - 0.5F, (p.y + 0.5F) / scale - 0.5F};
+}
 
 cv::TermCriteria stop() { return {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 12, 0.02}; }
 
@@ -51,8 +66,8 @@ const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       const cv::Point2f error = back[i] - corners_[i];
       if (!found[i] || !returned[i] || std::hypot(error.x, error.y) > kMaxReturnError_px) continue;
-      flow_.before.push_back(corners_[i] / scale_);
-      flow_.after.push_back(there[i] / scale_);
+      flow_.before.push_back(toImage(corners_[i], scale_));
+      flow_.after.push_back(toImage(there[i], scale_));
     }
   }
   findCorners();
@@ -63,15 +78,29 @@ FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const
   FollowedPoints points{before, std::vector<std::uint8_t>(before.size(), 0)};
   if (!comparable_ || before.empty()) return points;
   std::vector<cv::Point2f> scaled(before);
-  for (cv::Point2f& p : scaled) p *= scale_;
+  for (cv::Point2f& p : scaled) p = toPyramid(p, scale_);
   pf::follow(last_, newest_, scaled, points.after, points.found);
-  for (cv::Point2f& p : points.after) p /= scale_;
+  for (cv::Point2f& p : points.after) p = toImage(p, scale_);
   return points;
 }
 
 void FlowTracker::findCorners() {
-  corners_.clear();
   cv::goodFeaturesToTrack(grey_, corners_, kMaxCorners, kCornerQuality, kCornerSpacing_px);
+  const cv::Size cell((grey_.cols + kCellColumns - 1) / kCellColumns,
+                      (grey_.rows + kCellRows - 1) / kCellRows);
+  std::vector<std::uint8_t> taken(kCellColumns * kCellRows, 0);
+  for (const cv::Point2f& p : corners_) {
+    const int row = static_cast<int>(p.y) / cell.height, col = static_cast<int>(p.x) / cell.width;
+    taken[row * kCellColumns + col] = 1;
+  }
+  std::vector<cv::Point2f> found;
+  for (int i = 0; i < kCellColumns * kCellRows; ++i) {
+    const cv::Point from(i % kCellColumns * cell.width, i / kCellColumns * cell.height);
+    const cv::Rect area = cv::Rect(from, cell) & cv::Rect(0, 0, grey_.cols, grey_.rows);
+    if (taken[i] != 0 || area.empty()) continue;
+    cv::goodFeaturesToTrack(grey_(area), found, kCornersPerCell, kCellQuality, kCornerSpacing_px);
+    for (const cv::Point2f& p : found) corners_.emplace_back(p.x + from.x, p.y + from.y);
+  }
 }
 
 void FlowTracker::reset() { *this = FlowTracker(); }

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/tracking/sparse_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "posefusion/core/noise.hpp"
+
+namespace pf {
+namespace {
+
+constexpr int kMinMatches = 12;
+constexpr int kMinNear = 6;  // with depth
+constexpr double kMinInlierShare = 0.5;
+constexpr int kReach_px = 2;   // depth is the mean of 5x5 pixels ...
+constexpr int kMinDepths = 3;  // ... of which so many must be there
+constexpr int kRansacIterations = 100;
+constexpr double kRansacConfidence = 0.995;
+constexpr float kRansacError_px = 2.5F;
+constexpr int kMaxIterations = 10;
+constexpr double kCornerSigma_px = 0.5;  // of a corner's place, at full size
+// Corners without depth are mostly beyond the sensor's range. They tell of the turn, if little of
+// the shift.
+constexpr double kFar_m = 7.0;
+constexpr double kFarSigma_px = 1.0;
+constexpr double kCauchyScale = 2.0;  // standard deviations
+constexpr double kInlierSigmas = 4.0;
+// Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
+constexpr double kSharedTranslation_m = 0.002;
+constexpr double kSharedRotation_rad = 0.0008;
+
+/// A corner of the earlier frame in space, and where the later frame sees it.
+struct Landmark {
+  Eigen::Vector3d before;
+  Eigen::Vector2d after_px;
+  double after_m = 0;   ///< depth in the later frame, 0 = not known
+  bool is_far = false;  ///< without depth: taken to lie beyond the sensor's range
+};
+
+/// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
+/// allowed: dark and bright things return little.
+double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel) {
+  const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
+  const int first_u = std::max(0, u - kReach_px),
+            last_u = std::min(depth_m.cols - 1, u + kReach_px);
+  const int first_v = std::max(0, v - kReach_px),
+            last_v = std::min(depth_m.rows - 1, v + kReach_px);
+  float least = 1e9F, most = 0.0F, sum = 0.0F;
+  int count = 0;
+  for (int row = first_v; row <= last_v; ++row) {
+    const float* depth = depth_m.ptr<float>(row);
+    for (int col = first_u; col <= last_u; ++col) {
+      const float z = depth[col];
+      if (z <= 0.0F) continue;
+      least = std::min(least, z);
+      most = std::max(most, z);
+      sum += 1.0F / z;
+      ++count;
+    }
+  }
+  if (count < kMinDepths || most - least > surfaceTolerance(least, 4.0F)) return 0.0;
+  return static_cast<double>(static_cast<float>(count) / sum);
+}
+
+std::vector<Landmark> landmarksOf(const SparseFlow& flow, const FlowDepth& depth,
+                                  const PinholeCamera& camera) {
+  std::vector<Landmark> landmarks;
+  for (std::size_t i = 0; i < flow.before.size(); ++i) {
+    const cv::Point2f &a = flow.before[i], &b = flow.after[i];
+    const double z = smoothDepthAt(depth.before_m, a);
+    Landmark landmark{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
+    landmark.is_far = z <= 0;
+    if (!landmark.is_far) landmark.after_m = smoothDepthAt(depth.after_m, b);
+    landmarks.push_back(landmark);
+  }
+  return landmarks;
+}
+
+/// The later camera from the earlier one by P3P and RANSAC; false when nothing fits.
+bool guess(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
+           Eigen::Isometry3d& T_after_before) {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> pixels;
+  for (const Landmark& l : landmarks) {
+    points.emplace_back(l.before.x(), l.before.y(), l.before.z());
+    pixels.emplace_back(l.after_px.x(), l.after_px.y());
+  }
+  const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  cv::Vec3d turn, shift;
+  cv::Mat inliers;
+  if (!cv::solvePnPRansac(points, pixels, K, cv::noArray(), turn, shift, false, kRansacIterations,
+                          kRansacError_px, kRansacConfidence, inliers, cv::SOLVEPNP_P3P)) {
+    return false;
+  }
+  T_after_before.linear() = expSo3({turn[0], turn[1], turn[2]});
+  T_after_before.translation() = Eigen::Vector3d(shift[0], shift[1], shift[2]);
+  return T_after_before.matrix().allFinite();
+}
+
+struct System {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double weighted = 0;  ///< sum of weighted squared residuals, in standard deviations
+  double squared_px = 0;
+  int inliers = 0, residuals = 0;
+};
+
+/// Adds J'wJ and J'wr of one residual in standard deviations.
+void add(const Eigen::Matrix<double, 1, 6>& J, double r, double weight, System& system) {
+  system.H += weight * J.transpose() * J;
+  system.g += weight * J.transpose() * r;
+  system.weighted += weight * r * r;
+  ++system.residuals;
+}
+
+/// For the twist of T_after_before (update exp(twist) * T).
+System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
+             const Eigen::Isometry3d& T) {
+  System system;
+  for (const Landmark& l : landmarks) {
+    const Eigen::Vector3d q = T * l.before;
+    if (q.z() < 0.1) continue;
+    const double iz = 1.0 / q.z();
+    const double sigma_px = l.is_far ? kFarSigma_px : kCornerSigma_px;
+    const Eigen::Vector2d error = (camera.project(q) - l.after_px) / sigma_px;
+    Eigen::Matrix<double, 3, 6> dq;
+    dq << Eigen::Matrix3d::Identity(), -hat(q);
+    Eigen::Matrix<double, 2, 3> dp;
+    dp << camera.fx * iz, 0, -camera.fx * q.x() * iz * iz, 0, camera.fy * iz,
+        -camera.fy * q.y() * iz * iz;
+    double depth_error = 0, depth_sigma = 1;
+    if (l.after_m > 0) {
+      // Both depths are measured; the mean of nine pixels halves the noise, edges add to it.
+      depth_sigma = 1.4 * depthSigma(static_cast<float>(l.after_m));
+      depth_error = (q.z() - l.after_m) / depth_sigma;
+    }
+    const double distance2 = error.squaredNorm() + depth_error * depth_error;
+    const double weight = 1.0 / (1.0 + distance2 / (kCauchyScale * kCauchyScale));
+    const Eigen::Matrix<double, 2, 6> J = dp * dq / sigma_px;
+    add(J.row(0), error.x(), weight, system);
+    add(J.row(1), error.y(), weight, system);
+    if (l.after_m > 0) add(dq.row(2) / depth_sigma, depth_error, weight, system);
+    if (distance2 > kInlierSigmas * kInlierSigmas) continue;
+    ++system.inliers;
+    system.squared_px += error.squaredNorm() * sigma_px * sigma_px;
+  }
+  return system;
+}
+
+}  // namespace
+
+SparseMotion estimateMotion(const SparseFlow& flow, const FlowDepth& depth,
+                            const PinholeCamera& camera) {
+  SparseMotion motion;
+  const std::vector<Landmark> landmarks = landmarksOf(flow, depth, camera);
+  motion.matches = static_cast<int>(landmarks.size());
+  const auto near = std::count_if(landmarks.begin(), landmarks.end(),
+                                  [](const Landmark& l) { return !l.is_far; });
+  if (near < kMinNear || motion.matches < kMinMatches) return motion;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (!guess(landmarks, camera, T)) return motion;
+  System system;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    system = build(landmarks, camera, T);
+    const Vector6d step = system.H.ldlt().solve(-system.g);
+    if (!step.allFinite() || step.norm() > 1.0) return motion;
+    T = expSe3(step) * T;
+    if (step.norm() < 1e-5) break;
+  }
+  motion.inliers = system.inliers;
+  motion.found =
+      system.inliers >= kMinMatches && system.inliers >= kMinInlierShare * motion.matches;
+  if (!motion.found) return motion;
+  motion.rmse_px = std::sqrt(system.squared_px / system.inliers);
+  motion.T_before_after = T.inverse();
+  const double scale = std::max(1.0, system.weighted / std::max(1, system.residuals - 6));
+  motion.covariance = scale * system.H.ldlt().solve(Matrix6d::Identity());
+  motion.covariance.diagonal().head<3>().array() += kSharedTranslation_m * kSharedTranslation_m;
+  motion.covariance.diagonal().tail<3>().array() += kSharedRotation_rad * kSharedRotation_rad;
+  return motion;
+}
+
+}  // namespace pf
