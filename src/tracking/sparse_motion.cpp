@@ -22,9 +22,10 @@ constexpr float kRansacError_px = 2.5F;
 constexpr int kMaxIterations = 10;
 constexpr double kCornerSigma_px = 0.5;  // of a corner's place, at full size
 // Corners without depth are mostly beyond the sensor's range. They tell of the turn, if little of
-// the shift.
+// the shift, and are used only where there are few others.
 constexpr double kFar_m = 7.0;
-constexpr double kFarSigma_px = 1.0;
+constexpr double kFarSigma_px = 2.0;
+constexpr int kEnoughNear = 30;
 constexpr double kCauchyScale = 2.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
@@ -154,10 +155,12 @@ System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowDepth& depth,
                             const PinholeCamera& camera) {
   SparseMotion motion;
-  const std::vector<Landmark> landmarks = landmarksOf(flow, depth, camera);
+  std::vector<Landmark> landmarks = landmarksOf(flow, depth, camera);
+  const auto far = std::stable_partition(landmarks.begin(), landmarks.end(),
+                                         [](const Landmark& l) { return !l.is_far; });
+  const auto near = far - landmarks.begin();
+  if (near >= kEnoughNear) landmarks.erase(far, landmarks.end());
   motion.matches = static_cast<int>(landmarks.size());
-  const auto near = std::count_if(landmarks.begin(), landmarks.end(),
-                                  [](const Landmark& l) { return !l.is_far; });
   if (near < kMinNear || motion.matches < kMinMatches) return motion;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   if (!guess(landmarks, camera, T)) return motion;
