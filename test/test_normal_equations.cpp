@@ -101,7 +101,8 @@ Reference plainSums(const Scene& scene, const Eigen::Isometry3d& T, const TermSe
     const auto at = [&](int dv, int du) { return f.intensity.at<float>(cv_ + dv, cu + du); };
     const double top = at(0, 0) + a * (at(0, 1) - at(0, 0));
     const double bottom = at(1, 0) + a * (at(1, 1) - at(1, 0));
-    const double r = top + b * (bottom - top) - m.intensity[i] - s.brightness_offset;
+    const double r =
+        top + b * (bottom - top) - (s.brightness.gain * m.intensity[i] + s.brightness.offset);
     const double gu = (1 - b) * (at(0, 1) - at(0, 0)) + b * (at(1, 1) - at(1, 0));
     const double gx = gu * f.camera.fx / q.z(), gy = (bottom - top) * f.camera.fy / q.z();
     sums.add(
@@ -117,7 +118,7 @@ TEST(NormalEquations, AgreeWithPlainSums) {
   for (const float photometric_sigma : {0.0F, 10.0F}) {
     TermSettings settings;
     settings.photometric_sigma = photometric_sigma;
-    settings.brightness_offset = 2.0F;
+    settings.brightness = {1.1F, 2.0F};
     const Eigen::Isometry3d T = smallMotion(1.0);
     const NormalEquations sums = buildNormalEquations(scene.model, scene.frame, T, settings);
     const Reference plain = plainSums(scene, T, settings);

@@ -11,6 +11,7 @@ namespace {
 
 // In groups of lanes: 1024 points a task, whose float sums stay exact enough.
 constexpr std::size_t kGroupGrain = 64;
+constexpr double kMinGain = 0.25, kMaxGain = 4.0;
 
 struct Sums {
   double value[kernel::kSums] = {};
@@ -56,9 +57,12 @@ NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel&
   const kernel::Image image = toKernel(frame);
   const kernel::Motion motion = toKernel(T_frame_model);
   const kernel::Gates gates = {
-      settings.max_distance_m, settings.min_normal_cosine, settings.robust_scale,
+      settings.max_distance_m,
+      settings.min_normal_cosine,
+      settings.robust_scale,
       settings.photometric_sigma > 0 ? 1.0F / settings.photometric_sigma : 0.0F,
-      settings.brightness_offset};
+      settings.brightness.gain,
+      settings.brightness.offset};
   constexpr std::size_t lanes = ModelPoints::kLanes;
   const std::size_t groups = (model.count + lanes - 1) / lanes;
   const Sums sums =
@@ -70,14 +74,15 @@ NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel&
   NormalEquations out;
   std::copy_n(sums.value, 21, out.H);
   std::copy_n(sums.value + 21, 6, out.g);
-  out.geometric_error = sums.value[27];
-  out.photometric_error = sums.value[28];
-  out.photometric_sum = sums.value[29];
-  out.photometric_weight = sums.value[30];
-  out.robust_error = sums.value[31];
-  out.candidates = sums.value[32];
-  out.inliers = sums.value[33];
-  out.photometric_inliers = sums.value[34];
+  out.geometric_error = sums.value[kernel::kGeometricError];
+  out.photometric_error = sums.value[kernel::kPhotometricError];
+  std::copy_n(sums.value + kernel::kBrightnessWeight, 5, out.brightness);
+  const double weight = sums.value[kernel::kCostWeight];
+  out.cost = weight > 0 ? sums.value[kernel::kCost] / weight : 0.0;
+  out.candidates = sums.value[kernel::kCandidates];
+  out.inliers = sums.value[kernel::kInliers];
+  out.photometric_inliers = sums.value[kernel::kPhotometricInliers];
+  out.seen_through = sums.value[kernel::kSeenThrough];
   return out;
 }
 
@@ -88,6 +93,17 @@ Matrix6d NormalEquations::hessian() const {
     for (int col = row; col < 6; ++col, ++k) full(row, col) = full(col, row) = H[k];
   }
   return full;
+}
+
+Brightness NormalEquations::fittedBrightness() const {
+  const auto& [w, m, y, mm, my] = brightness;
+  if (w <= 0) return {};
+  // As if pixels of this contrast (grey levels) had been seen with gain 1.
+  constexpr double kPriorContrast = 10.0;
+  const double variance = mm / w - (m / w) * (m / w) + kPriorContrast * kPriorContrast;
+  const double covariance = my / w - (m / w) * (y / w) + kPriorContrast * kPriorContrast;
+  const double gain = std::clamp(covariance / variance, kMinGain, kMaxGain);
+  return {static_cast<float>(gain), static_cast<float>(y / w - gain * m / w)};
 }
 
 Vector6d NormalEquations::gradient() const { return Eigen::Map<const Vector6d>(g); }

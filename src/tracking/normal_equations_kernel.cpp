@@ -106,10 +106,14 @@ POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group
     weight[l] = inlier * root * root * p.weight[i + l] / (sigma * sigma);
     residual[l] = r;
     const float agrees = x2 < kInlierSigmas * kInlierSigmas ? inlier : 0.0F;
-    sums[27][l] += agrees * r * r;
-    sums[31][l] += weight[l] * r * r;
-    sums[32][l] += candidate;
-    sums[33][l] += agrees;
+    sums[kGeometricError][l] += agrees * r * r;
+    // What has no partner costs as much as the worst of those that have.
+    const float cost = 1.0F - inlier * root;
+    sums[kCost][l] += candidate * p.weight[i + l] * cost;
+    sums[kCostWeight][l] += candidate * p.weight[i + l];
+    sums[kCandidates][l] += candidate;
+    sums[kInliers][l] += agrees;
+    sums[kSeenThrough][l] += depth - q.z[l] > gates.max_distance ? candidate : 0.0F;
   }
   addTerm(q, q.nx, q.ny, q.nz, weight, residual, sums);
 }
@@ -126,7 +130,8 @@ POSEFUSION_INLINE void photometricTerm(const Points& p, std::size_t i, const Gro
     const float top = i00 + du * (i01 - i00), bottom = i10 + du * (i11 - i10);
     const float gu = (1 - dv) * (i01 - i00) + dv * (i11 - i10);
     const float gv = bottom - top;
-    const float r = top + dv * gv - (p.intensity[i + l] + gates.brightness_offset);
+    const float r =
+        top + dv * gv - (gates.brightness_gain * p.intensity[i + l] + gates.brightness_offset);
     const float gx = gu * image.fx * q.inverse_z[l], gy = gv * image.fy * q.inverse_z[l];
     ax[l] = gx;
     ay[l] = gy;
@@ -137,11 +142,17 @@ POSEFUSION_INLINE void photometricTerm(const Points& p, std::size_t i, const Gro
     const float robust = near[l] * root * root * p.weight[i + l];
     weight[l] = robust * s * s;
     residual[l] = r;
-    sums[28][l] += near[l] * r * r;
-    sums[29][l] += robust * r;
-    sums[30][l] += robust;
-    sums[31][l] += weight[l] * r * r;
-    sums[34][l] += near[l];
+    const float m = p.intensity[i + l], y = top + dv * gv;
+    sums[kPhotometricError][l] += near[l] * r * r;
+    sums[kBrightnessWeight][l] += robust;
+    sums[kBrightnessM][l] += robust * m;
+    sums[kBrightnessY][l] += robust * y;
+    sums[kBrightnessMM][l] += robust * m * m;
+    sums[kBrightnessMY][l] += robust * m * y;
+    const float cost = 1.0F - near[l] * root;
+    sums[kCost][l] += q.inside[l] * p.weight[i + l] * cost;
+    sums[kCostWeight][l] += q.inside[l] * p.weight[i + l];
+    sums[kPhotometricInliers][l] += near[l];
   }
   addTerm(q, ax, ay, az, weight, residual, sums);
 }

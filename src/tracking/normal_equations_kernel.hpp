@@ -23,13 +23,28 @@ struct Motion {
 };
 
 struct Gates {
-  float max_distance, min_cosine, robust_scale, inverse_photometric_sigma, brightness_offset;
+  float max_distance, min_cosine, robust_scale, inverse_photometric_sigma;
+  float brightness_gain, brightness_offset;
 };
 
-/// Sums: 0-20 upper triangle of H, 21-26 g, 27 geometric error, 28 photometric error, 29 weighted
-/// photometric residuals, 30 their weights, 31 robust error, 32 candidates, 33 inliers,
-/// 34 photometric inliers.
-constexpr int kSums = 35;
+/// Places of the sums: 0-20 upper triangle of H, 21-26 g, then these.
+enum Sum : int {
+  kGeometricError = 27,
+  kPhotometricError,
+  kBrightnessWeight,  ///< sum w, then of w m, w y, w m m, w m y: m the model's grey level, y the
+                      ///< frame's
+  kBrightnessM,
+  kBrightnessY,
+  kBrightnessMM,
+  kBrightnessMY,
+  kCost,
+  kCostWeight,
+  kCandidates,
+  kInliers,
+  kPhotometricInliers,
+  kSeenThrough,
+  kSums
+};
 
 /// Adds the sums over points [begin, end), a whole number of groups of 16, to `sums`.
 void accumulate(const Points& points, const Image& image, const Motion& motion, const Gates& gates,

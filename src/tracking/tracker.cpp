@@ -12,89 +12,152 @@ namespace pf {
 namespace {
 
 // A step below this (rad and m) ends a level; on the finest one it is also what "converged" means.
-constexpr double kSmallStep = 5e-5;
+constexpr double kSmallStep = 1e-4;
 constexpr double kConvergedStep = 2e-3;
-// Least information (1 / variance, per m^2 or rad^2) in every direction: below it the system is
-// singular for practical purposes (a single bare wall leaves three directions free).
-constexpr double kMinInformation = 1e3;
+constexpr int kMaxHalvings = 3;
+// Pixels that come and go at the borders move the mean cost by about this.
+constexpr double kCostNoise = 1e-3;
 // Residuals of so many standard deviations keep a quarter of their weight on the finest level.
 constexpr float kRobustScale = 3.0F;
+// Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
+// map's ripples): so many pixels of the finest level say as much as one independent measurement.
+constexpr double kPixelsPerMeasurement = 400.0;
+// Error of a normal (rad): directions with less information than its square times that of the
+// best-known one are fixed by noise alone.
+constexpr double kNormalNoise_rad = 0.05;
+constexpr double kLeverArm_m = 2.0;  // a turn moves the scene by this times its angle
 
-struct LevelResult {
+/// The images' word on the pose, with noise taken out, and the prior's.
+struct PoseSystem {
+  Matrix6d H;
+  Vector6d g;
+  int free_directions = 0;
+};
+
+/// Leaves of H only what is more than noise; see kNormalNoise_rad. The prior decides the rest.
+PoseSystem combine(const NormalEquations& e, double share, const Matrix6d& prior_information,
+                   const Vector6d& prior_error) {
+  Vector6d scale = Vector6d::Ones();
+  scale.tail<3>().setConstant(1.0 / kLeverArm_m);
+  const Matrix6d S = scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(S * e.hessian() * S);
+  const Vector6d& values = eigen.eigenvalues();
+  const double floor = kNormalNoise_rad * kNormalNoise_rad * values[5];
+  Vector6d kept;
+  PoseSystem system;
+  for (int i = 0; i < 6; ++i) {
+    kept[i] = values[i] > floor ? (values[i] - floor) / values[i] : 0.0;
+    system.free_directions += kept[i] == 0.0 ? 1 : 0;
+  }
+  const Matrix6d& V = eigen.eigenvectors();
+  const Matrix6d keep = V * kept.asDiagonal() * V.transpose();
+  const Matrix6d inverse_S = scale.cwiseInverse().asDiagonal();
+  system.H = inverse_S * V * values.cwiseProduct(kept).asDiagonal() * V.transpose() * inverse_S;
+  system.H = share * system.H + prior_information;
+  system.g = share * inverse_S * keep * S * e.gradient() + prior_information * prior_error;
+  return system;
+}
+
+struct Prior {
   Eigen::Isometry3d T_frame_view;
-  NormalEquations equations;  ///< at the last linearisation
-  float brightness_offset = 0;
+  Matrix6d information;
+};
+
+/// An alignment at work: the pose that fits best so far, and what was found there.
+struct Alignment {
+  Eigen::Isometry3d T_frame_view;
+  TermSettings settings;
+  NormalEquations equations;  ///< at T_frame_view
+  PoseSystem system;
   double last_step = 0;
   int iterations = 0;
   bool solvable = true;
 };
 
-LevelResult alignLevel(const ModelPoints& model, const FrameLevel& frame, LevelResult start,
-                       const TrackingConfig& config, TermSettings settings) {
-  LevelResult result = start;
-  for (int i = 0; i < config.max_iterations; ++i) {
-    settings.brightness_offset = result.brightness_offset;
-    result.equations = buildNormalEquations(model, frame, result.T_frame_view, settings);
-    ++result.iterations;
-    const NormalEquations& e = result.equations;
-    const Eigen::LDLT<Matrix6d> ldlt(e.hessian());
-    result.solvable = e.inliers >= 6 && ldlt.info() == Eigen::Success &&
-                      ldlt.vectorD().minCoeff() > 0 && ldlt.isPositive();
-    if (!result.solvable) return result;
-    const Vector6d step = ldlt.solve(-e.gradient());
-    if (!step.allFinite() || step.norm() > 1.0) {
-      result.solvable = false;
-      return result;
+/// Colors that do not fit (a misplaced color camera, another exposure) say less: the scale of the
+/// residuals is estimated, not assumed.
+void adaptPhotometry(const NormalEquations& e, const TrackingConfig& config,
+                     TermSettings& settings) {
+  if (settings.photometric_sigma <= 0 || e.photometric_inliers <= 0) return;
+  settings.brightness = e.fittedBrightness();
+  settings.photometric_sigma = static_cast<float>(
+      std::max(config.photometric_sigma, std::sqrt(e.photometric_error / e.photometric_inliers)));
+}
+
+void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share, const Prior& prior,
+                const TrackingConfig& config, Alignment& a) {
+  const auto evaluate = [&](const Eigen::Isometry3d& T) {
+    ++a.iterations;
+    return buildNormalEquations(model, frame, T, a.settings);
+  };
+  a.equations = evaluate(a.T_frame_view);
+  for (int i = 1; i < config.max_iterations; ++i) {
+    a.solvable = a.equations.inliers >= 6;
+    if (!a.solvable) return;
+    a.system = combine(a.equations, share, prior.information,
+                       logSe3(a.T_frame_view * prior.T_frame_view.inverse()));
+    Vector6d step = a.system.H.ldlt().solve(-a.system.g);
+    a.solvable = step.allFinite() && step.norm() < 1.0;
+    if (!a.solvable) return;
+    const double before = a.equations.cost;
+    adaptPhotometry(a.equations, config, a.settings);
+    NormalEquations next = evaluate(expSe3(step) * a.T_frame_view);
+    // The first step of a level changes brightness and scale too, so that costs do not compare.
+    for (int k = 0; i > 1 && k < kMaxHalvings && next.cost > before + kCostNoise; ++k) {
+      step *= 0.5;
+      next = evaluate(expSe3(step) * a.T_frame_view);
     }
-    result.T_frame_view = expSe3(step) * result.T_frame_view;
-    result.last_step = step.norm();
-    if (e.photometric_weight > 0) {
-      result.brightness_offset += static_cast<float>(e.photometric_sum / e.photometric_weight);
-    }
-    // Colours that do not fit (a misplaced colour camera, another exposure) say less: the scale of
-    // the residuals is estimated, not assumed.
-    if (settings.photometric_sigma > 0 && e.photometric_inliers > 0) {
-      settings.photometric_sigma = static_cast<float>(std::max(
-          config.photometric_sigma, std::sqrt(e.photometric_error / e.photometric_inliers)));
-    }
-    if (result.last_step < kSmallStep) break;
+    a.last_step = step.norm();
+    if (i > 1 && next.cost > before + kCostNoise) return;
+    a.T_frame_view = expSe3(step) * a.T_frame_view;
+    a.equations = next;
+    if (a.last_step < kSmallStep) return;
   }
+}
+
+TrackingResult resultOf(const Alignment& a, double share, const Prior& prior,
+                        const Eigen::Isometry3d& T_map_view) {
+  const NormalEquations& e = a.equations;
+  TrackingResult result;
+  result.T_map_camera = orthonormalised(T_map_view * a.T_frame_view.inverse());
+  result.iterations = a.iterations;
+  result.candidates = static_cast<int>(e.candidates);
+  result.inliers = static_cast<int>(e.inliers);
+  result.seen_through = static_cast<int>(e.seen_through);
+  result.cost = e.cost;
+  result.brightness = a.settings.brightness;
+  if (e.inliers > 0) result.geometric_rmse_m = std::sqrt(e.geometric_error / e.inliers);
+  if (e.photometric_inliers > 0) {
+    result.photometric_rmse = std::sqrt(e.photometric_error / e.photometric_inliers);
+  }
+  if (!a.solvable) return result;
+  const PoseSystem system = combine(e, share, prior.information, Vector6d::Zero());
+  result.free_directions = system.free_directions;
+  result.converged = a.last_step < kConvergedStep;
+  result.covariance = system.H.ldlt().solve(Matrix6d::Identity());
   return result;
 }
 
 }  // namespace
 
 TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
-                     const Eigen::Isometry3d& T_map_view, const Eigen::Isometry3d& T_view_camera,
-                     const TrackingConfig& config) {
-  TermSettings settings;
-  settings.max_distance_m = static_cast<float>(config.max_distance_m);
-  settings.min_normal_cosine = static_cast<float>(std::cos(config.max_normal_angle_rad));
-  settings.photometric_sigma = static_cast<float>(config.photometric_sigma);
-
-  LevelResult level;
-  level.T_frame_view = T_view_camera.inverse();
+                     const TrackingStart& start, const TrackingConfig& config) {
+  Alignment a;
+  a.settings.max_distance_m = static_cast<float>(config.max_distance_m);
+  a.settings.min_normal_cosine = static_cast<float>(std::cos(config.max_normal_angle_rad));
+  a.settings.photometric_sigma = static_cast<float>(config.photometric_sigma);
+  a.settings.brightness = start.brightness;
+  a.T_frame_view = start.T_map_camera.inverse() * start.T_map_view;
+  const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
+                    start.prior.covariance.ldlt().solve(Matrix6d::Identity())};
+  double share = 1.0;
   for (int i = kLevels - 1; i >= 0; --i) {
     // Coarse levels start further away: what is an outlier there may be an inlier later.
-    settings.robust_scale = kRobustScale * static_cast<float>(1 << i);
-    level = alignLevel(model.level(i), frame.levels[i], level, config, settings);
+    a.settings.robust_scale = kRobustScale * static_cast<float>(1 << i);
+    share = static_cast<double>(1 << (2 * i)) / kPixelsPerMeasurement;
+    alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
-  const NormalEquations& e = level.equations;
-  TrackingResult result;
-  result.T_map_camera = orthonormalised(T_map_view * level.T_frame_view.inverse());
-  result.iterations = level.iterations;
-  result.candidates = static_cast<int>(e.candidates);
-  result.inliers = static_cast<int>(e.inliers);
-  if (e.inliers > 0) result.geometric_rmse_m = std::sqrt(e.geometric_error / e.inliers);
-  if (e.photometric_inliers > 0) {
-    result.photometric_rmse = std::sqrt(e.photometric_error / e.photometric_inliers);
-  }
-  if (!level.solvable) return result;
-  const Matrix6d H = e.hessian();
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix6d>(H).eigenvalues()[0];
-  result.converged = level.last_step < kConvergedStep && least > kMinInformation;
-  result.covariance = H.ldlt().solve(Matrix6d::Identity());
-  return result;
+  return resultOf(a, share, prior, start.T_map_view);
 }
 
 }  // namespace pf

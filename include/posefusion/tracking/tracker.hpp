@@ -9,13 +9,29 @@
 
 namespace pf {
 
+/// What is known of a frame's pose before it is aligned.
+struct PosePrior {
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Identity();  ///< of the twist (m, rad) in the camera frame
+};
+
+/// Where an alignment begins.
+struct TrackingStart {
+  Eigen::Isometry3d T_map_view = Eigen::Isometry3d::Identity();    ///< the model's camera
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< first guess
+  PosePrior prior;        ///< a weak factor, which decides where the images say little
+  Brightness brightness;  ///< first guess
+};
+
 /// Aligns a frame with the model seen in a view: Gauss-Newton from the coarsest level to the
-/// finest, geometric and photometric residuals in one system with consistent weights.
-/// `T_view_camera` is the first guess of the frame's pose in the view's camera frame. `model`
-/// belongs to `view`. Keeps no state; the result says how far it can be trusted, the caller
-/// decides.
+/// finest, geometric and photometric residuals and the prior in one system with consistent weights.
+/// A step that does not lower the cost is halved, then given up. Keeps no state; the result says
+/// how far it can be trusted, the caller decides.
+///
+/// The covariance counts neighbouring pixels, whose errors go together, as one measurement, and
+/// directions that only the noise of the normals seems to fix (a bare wall's own plane) as free: in
+/// those the prior decides.
 TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
-                     const Eigen::Isometry3d& T_map_view, const Eigen::Isometry3d& T_view_camera,
-                     const TrackingConfig& config);
+                     const TrackingStart& start, const TrackingConfig& config);
 
 }  // namespace pf
