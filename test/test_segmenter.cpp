@@ -60,12 +60,28 @@ double iou(const cv::Mat& a, const cv::Mat& b) {
   return static_cast<double>(cv::countNonZero(a & b)) / std::max(1, cv::countNonZero(a | b));
 }
 
+/// A segmenter with the optical flow that its owner keeps.
+class Chain {
+ public:
+  explicit Chain(const SegmentationConfig& config = {}) : segmenter_(config) {}
+
+  Segmentation segment(const RgbdFrame& frame, const People& people, const ModelView* background) {
+    flow_.advance(frame);
+    return segmenter_.segment(frame, flow_, people, background);
+  }
+  void reset() { segmenter_.reset(); }
+
+ private:
+  FlowTracker flow_;
+  PeopleSegmenter segmenter_;
+};
+
 TEST(Segmenter, CutsAFigureOut) {
   for (const char* energy : {"improved", "paper"}) {
     SegmentationConfig config;
     config.energy = energy;
     const Scene scene;
-    PeopleSegmenter segmenter(config);
+    Chain segmenter(config);
     const Segmentation result = segmenter.segment(scene.frame, scene.people, nullptr);
     ASSERT_FALSE(result.mask.empty());
     EXPECT_GT(iou(result.mask, scene.truth), std::string(energy) == "paper" ? 0.7 : 0.93) << energy;
@@ -80,7 +96,7 @@ TEST(Segmenter, CutsAFigureOut) {
 TEST(Segmenter, WorksFromHalfAMetreToFive) {
   for (const float z : {0.8F, 1.5F, 2.5F, 4.0F, 4.8F}) {
     const Scene scene(z, 320, 6.0F);
-    PeopleSegmenter segmenter({});
+    Chain segmenter;
     const Segmentation result = segmenter.segment(scene.frame, scene.people, nullptr);
     ASSERT_FALSE(result.mask.empty()) << z;
     EXPECT_GT(iou(result.mask, scene.truth), 0.85) << z;
@@ -89,7 +105,7 @@ TEST(Segmenter, WorksFromHalfAMetreToFive) {
 
 TEST(Segmenter, NobodyCostsNothing) {
   const Scene scene;
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, {1, true, {}}, &scene.room);
   EXPECT_TRUE(result.mask.empty());
   EXPECT_EQ(result.static_depth.data, scene.frame.depth.data);
@@ -98,7 +114,7 @@ TEST(Segmenter, NobodyCostsNothing) {
 TEST(Segmenter, DoesNotTouchItsInput) {
   const Scene scene;
   const cv::Mat before = scene.frame.depth.clone();
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
   EXPECT_EQ(cv::countNonZero(before != scene.frame.depth), 0);
   // The mask is the person, the rim is only taken from the depth.
@@ -106,7 +122,7 @@ TEST(Segmenter, DoesNotTouchItsInput) {
 }
 
 TEST(Segmenter, CarriesPeopleWhoWalkUnseen) {
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   for (int i = 0; i < 20; ++i) {
     Scene scene(2.0F, 250 + 5 * i);
     cv::Mat noise(480, 640, CV_8UC3);
@@ -125,7 +141,7 @@ TEST(Segmenter, CarriesPeopleWhoWalkUnseen) {
 }
 
 TEST(Segmenter, ForgetsWhoIsGone) {
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   Scene scene;
   segmenter.segment(scene.frame, scene.people, &scene.room);
   scene.frame.depth = scene.room.depth_m;
@@ -134,12 +150,34 @@ TEST(Segmenter, ForgetsWhoIsGone) {
   EXPECT_TRUE(result.mask.empty() || cv::countNonZero(result.mask) < 300);
 }
 
+TEST(Segmenter, ForgetsCarriedPeopleWhenTheImageSizeChanges) {
+  for (const cv::Size size : {cv::Size(640, 240), cv::Size(80, 60), cv::Size(1280, 960)}) {
+    Chain segmenter;
+    Scene scene;
+    segmenter.segment(scene.frame, scene.people, &scene.room);
+    RgbdFrame other = scene.frame;
+    const double scale = size.width / 640.0;
+    other.camera = {size.width,       size.height,       525 * scale, 525 * scale,
+                    0.5 * size.width, 0.5 * size.height, {}};
+    cv::resize(scene.frame.color, other.color, size, 0, 0, cv::INTER_NEAREST);
+    cv::resize(scene.frame.depth, other.depth, size, 0, 0, cv::INTER_NEAREST);
+    other.stamp_ns = 2;
+    const Segmentation result = segmenter.segment(other, {2, false, {}}, nullptr);
+    EXPECT_TRUE(result.people.people.empty()) << size;
+    EXPECT_TRUE(result.mask.empty()) << size;
+    // And people are found as ever in the size before.
+    scene.frame.stamp_ns = 3;
+    EXPECT_GT(iou(segmenter.segment(scene.frame, scene.people, &scene.room).mask, scene.truth),
+              0.93);
+  }
+}
+
 TEST(Segmenter, WhatTheMapHasIsNobody) {
   // A weak detection on a wall that the map knows well.
   Scene scene;
   scene.frame.depth = scene.room.depth_m;
   scene.people.people[0].score = 0.45F;
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
   EXPECT_TRUE(result.mask.empty());
   // A sure one wins, for somebody may have been missed and mapped.
@@ -154,7 +192,7 @@ TEST(Segmenter, PeopleCoverMostOfTheView) {
   scene.frame.depth.setTo(1.0);
   scene.frame.depth.colRange(0, 128).setTo(3.0);
   for (auto& joint : scene.people.people[0].joints) joint.u = joint.p > 0 ? joint.u + 50 : 0;
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, scene.people, nullptr);
   ASSERT_FALSE(result.mask.empty());
   EXPECT_EQ(cv::countNonZero(result.mask.colRange(0, 120)), 0);
@@ -166,7 +204,7 @@ TEST(Segmenter, DepthThatIsMissingOrWild) {
   for (const float value : {0.0F, nan, infinite, -1.0F, 100.0F}) {
     Scene scene;
     scene.frame.depth.setTo(cv::Scalar(value));
-    PeopleSegmenter segmenter({});
+    Chain segmenter;
     const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
     EXPECT_TRUE(result.mask.empty()) << value;
     EXPECT_EQ(result.static_depth.data, scene.frame.depth.data);
@@ -177,9 +215,8 @@ TEST(Segmenter, MillimetresAndMetresAgree) {
   const Scene metres;
   Scene millimetres;
   metres.frame.depth.convertTo(millimetres.frame.depth, CV_16UC1, 1000.0);
-  const Segmentation a = PeopleSegmenter({}).segment(metres.frame, metres.people, nullptr);
-  const Segmentation b =
-      PeopleSegmenter({}).segment(millimetres.frame, millimetres.people, nullptr);
+  const Segmentation a = Chain().segment(metres.frame, metres.people, nullptr);
+  const Segmentation b = Chain().segment(millimetres.frame, millimetres.people, nullptr);
   EXPECT_EQ(cv::countNonZero(a.mask != b.mask), 0);
   EXPECT_EQ(b.static_depth.type(), CV_16UC1);
 }
@@ -192,7 +229,7 @@ TEST(Segmenter, SeedsOutsideTheImage) {
   joints[10] = {320, 5000, 0.9F};
   joints[12] = {far, -far, 0.9F};
   joints[13] = {nan, nan, 0.9F};
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   EXPECT_GT(iou(segmenter.segment(scene.frame, scene.people, nullptr).mask, scene.truth), 0.8);
   scene.people.detected = false;
   scene.people.people.clear();
@@ -201,7 +238,7 @@ TEST(Segmenter, SeedsOutsideTheImage) {
 
 TEST(Segmenter, AMirroredSceneHasAMirroredMask) {
   Scene scene(2.0F, 260);
-  const Segmentation straight = PeopleSegmenter({}).segment(scene.frame, scene.people, nullptr);
+  const Segmentation straight = Chain().segment(scene.frame, scene.people, nullptr);
   cv::Mat color, depth, mirrored;
   cv::flip(scene.frame.color, color, 1);
   cv::flip(scene.frame.depth, depth, 1);
@@ -210,7 +247,7 @@ TEST(Segmenter, AMirroredSceneHasAMirroredMask) {
   for (auto& joint : scene.people.people[0].joints) {
     if (joint.p > 0) joint.u = 639 - joint.u;
   }
-  const Segmentation turned = PeopleSegmenter({}).segment(scene.frame, scene.people, nullptr);
+  const Segmentation turned = Chain().segment(scene.frame, scene.people, nullptr);
   cv::flip(turned.mask, mirrored, 1);
   EXPECT_GT(iou(straight.mask, mirrored), 0.97);
 }
@@ -220,14 +257,14 @@ TEST(Segmenter, DoesNotDependOnThreads) {
   cv::Mat masks[2];
   for (const int threads : {1, 4}) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    masks[threads > 1] = PeopleSegmenter({}).segment(scene.frame, scene.people, &scene.room).mask;
+    masks[threads > 1] = Chain().segment(scene.frame, scene.people, &scene.room).mask;
   }
   EXPECT_EQ(cv::countNonZero(masks[0] != masks[1]), 0);
 }
 
 TEST(Segmenter, ResetForgets) {
   const Scene scene;
-  PeopleSegmenter segmenter({});
+  Chain segmenter;
   segmenter.segment(scene.frame, scene.people, nullptr);
   segmenter.reset();
   EXPECT_TRUE(segmenter.segment(scene.frame, {2, false, {}}, nullptr).mask.empty());
@@ -245,7 +282,7 @@ TEST(Segmenter, FivePeople) {
   pose.model = model.string();
   const People people = makePoseDetector(pose, {})->detect(frame);
   EXPECT_EQ(people.people.size(), 5U);
-  const Segmentation result = PeopleSegmenter({}).segment(frame, people, nullptr);
+  const Segmentation result = Chain().segment(frame, people, nullptr);
   // Boxes on the five trunks by eye, and three on walls and floor.
   for (const cv::Rect& body :
        {cv::Rect(45, 150, 70, 200), cv::Rect(160, 170, 65, 150), cv::Rect(300, 170, 55, 130),

@@ -94,14 +94,16 @@ class SegmenterNodelet : public ChainNodelet {
     const std_msgs::Header& header = color->header;
     if (background_.takeResets() > 0 || header.stamp < last_) {
       segmenter_->reset();
+      flow_.reset();
       last_ = ros::Time();
     }
     const ModelViewMsg::ConstPtr view = viewFor(header.stamp);
     if (background_.stopped()) return;
     const pf::ModelView model = view ? fromMessage(view) : pf::ModelView();
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    flow_.advance(frame);
     const pf::Segmentation result = segmenter_->segment(
-        frame, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
+        frame, flow_, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
     publish(frame, result, depth, header);
   }
@@ -124,7 +126,8 @@ class SegmenterNodelet : public ChainNodelet {
     std::string error;
     const auto T = lookup_->find(plainFrame(header.frame_id), up_frame_, header.stamp, error);
     if (!T) {
-      NODELET_WARN_THROTTLE(5.0, "gravity unknown, the camera counts as level: %s", error.c_str());
+      NODELET_WARN_THROTTLE(5.0, "gravity unknown, horizontal means in the image plane: %s",
+                            error.c_str());
       return std::nullopt;
     }
     return T->linear() * Eigen::Vector3d::UnitZ();
@@ -158,6 +161,7 @@ class SegmenterNodelet : public ChainNodelet {
   std::string up_frame_;
   std::unique_ptr<TransformLookup> lookup_;
   std::unique_ptr<pf::PeopleSegmenter> segmenter_;
+  pf::FlowTracker flow_;
   ros::Time last_;  // the frame before; zero at the start
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "posefusion/segmentation/cut_grid.hpp"
 #include "posefusion/segmentation/energy.hpp"
@@ -61,7 +62,6 @@ struct PeopleSegmenter::State {
   SceneGrid grid;
   std::vector<PersonTrack> tracks;
   std::vector<Body> bodies;
-  TrackCarrier carrier;
   MotionPredictor motion;
   PlaneFinder planes;
   Evidence evidence;
@@ -69,6 +69,7 @@ struct PeopleSegmenter::State {
   GridCutter cutter;
   std::vector<std::uint8_t> labels;
 
+  void takeGrid(const RgbdFrame& frame, int grid_width);
   std::vector<int> cellsBeforeMap(const PersonTrack& track) const;
   void locate(const SegmentationConfig& config);
   void cut(const SegmentationConfig& config, const std::optional<Eigen::Vector3d>& up_camera);
@@ -78,6 +79,15 @@ struct PeopleSegmenter::State {
 PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config)
     : config_(config), state_(std::make_unique<State>()) {}
 PeopleSegmenter::~PeopleSegmenter() = default;
+
+/// Samples the frame. The cells of carried people count on the grid of the last frame: where this
+/// one has another size, they mean nothing and the people are forgotten.
+void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
+  const auto sizeOf = [](const SceneGrid& g) { return std::make_tuple(g.cols, g.rows, g.step); };
+  const auto last = sizeOf(grid);
+  sampleGrid(frame, depth_m, grid_width, grid);
+  if (sizeOf(grid) != last) tracks.clear();
+}
 
 /// Cells of the carried mask, at the person's depth, that lie in front of the known background.
 std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const PersonTrack& track) const {
@@ -170,20 +180,19 @@ void PeopleSegmenter::State::keepTracks(const SegmentationConfig&) {
                tracks.end());
 }
 
-Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const People& people,
-                                      const ModelView* background,
+Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,
+                                      const People& people, const ModelView* background,
                                       const std::optional<Eigen::Vector3d>& up_camera) {
   State& s = *state_;
   Segmentation result{cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) T_view_camera = s.motion.predict(*background, frame.stamp_ns);
   if (!config_.enabled || (s.tracks.empty() && people.people.empty())) {
-    s.carrier.forget();
     return result;
   }
   depthInMetres(frame, kMinDepth_m, kMaxDepth_m, s.depth_m);
-  sampleGrid(frame, s.depth_m, config_.grid_width, s.grid);
-  if (!s.tracks.empty()) s.carrier.carry(frame, s.grid, s.tracks);
+  s.takeGrid(frame, config_.grid_width);
+  carryTracks(flow, s.grid, s.tracks);
   mergeDetections(people, s.grid, s.tracks);
   if (background != nullptr) {
     compareWithModel(s.grid, *background, T_view_camera, s.evidence.background);
@@ -200,7 +209,6 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const People& peop
     result.static_depth =
         removeMasked(frame.depth, result.mask, static_cast<int>(std::lround(margin)));
   }
-  s.carrier.remember(frame);
   return result;
 }
 

@@ -3,17 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 
 namespace pf {
 namespace {
 
-constexpr int kFlowWidth = 320;  // pixels of the images that flow is measured on
-constexpr int kPyramidLevels = 2;
-constexpr int kMaskSamples = 30;          // per person
-constexpr float kMaxDeviation_px = 6.0F;  // of a joint's flow from its person's, at kFlowWidth
-const cv::Size kWindow(13, 13);
+constexpr int kMaskSamples = 30;         // per person
+constexpr float kMaxDeviation = 0.019F;  // of a joint's flow from its person's, in image widths
 
 float medianOf(std::vector<float>& values) {
   if (values.empty()) return 0.0F;
@@ -21,47 +16,51 @@ float medianOf(std::vector<float>& values) {
   return values[values.size() / 2];
 }
 
-/// What of one person is followed: first the seen joints, then samples of the mask.
-struct Points {
+/// What is followed of one person, in pixels: first the joints that were seen, then samples of the
+/// mask.
+struct PersonPoints {
   std::vector<int> joints;
-  std::vector<cv::Point2f> before, after;
-  std::vector<std::uint8_t> found;
+  std::vector<cv::Point2f> before;
 };
 
-Points pointsOf(const PersonTrack& track, const SceneGrid& grid, float scale) {
-  Points points;
+PersonPoints pointsOf(const PersonTrack& track, const SceneGrid& grid) {
+  PersonPoints points;
   for (int j = 0; j < kJointCount; ++j) {
     const Keypoint& joint = track.person.joints[j];
     if (joint.p <= 0.0F) continue;
     points.joints.push_back(j);
-    points.before.emplace_back(joint.u * scale, joint.v * scale);
+    points.before.emplace_back(joint.u, joint.v);
   }
   const std::size_t stride = std::max<std::size_t>(1, track.cells.size() / kMaskSamples);
-  const float cell_px = static_cast<float>(grid.step) * scale;
+  const float half = 0.5F * static_cast<float>(grid.step - 1);
   for (std::size_t i = stride / 2; i < track.cells.size(); i += stride) {
-    points.before.emplace_back((track.cells[i] % grid.cols + 0.5F) * cell_px,
-                               (track.cells[i] / grid.cols + 0.5F) * cell_px);
+    const int col = track.cells[i] % grid.cols, row = track.cells[i] / grid.cols;
+    points.before.emplace_back(static_cast<float>(col * grid.step) + half,
+                               static_cast<float>(row * grid.step) + half);
   }
   return points;
 }
 
-cv::Point2f medianFlow(const Points& points) {
+cv::Point2f medianFlow(const std::vector<cv::Point2f>& before, const FollowedPoints& followed) {
   std::vector<float> du, dv;
-  for (std::size_t i = 0; i < points.before.size(); ++i) {
-    if (!points.found[i]) continue;
-    du.push_back(points.after[i].x - points.before[i].x);
-    dv.push_back(points.after[i].y - points.before[i].y);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (followed.found[i] == 0) continue;
+    du.push_back(followed.after[i].x - before[i].x);
+    dv.push_back(followed.after[i].y - before[i].y);
   }
   return {medianOf(du), medianOf(dv)};
 }
 
-void moveJoints(const Points& points, const cv::Point2f& median, float scale, Person& person) {
+void moveJoints(const PersonPoints& points, const FollowedPoints& followed,
+                const cv::Point2f& median, float max_deviation_px, Person& person) {
   for (std::size_t i = 0; i < points.joints.size(); ++i) {
-    cv::Point2f flow = points.after[i] - points.before[i];
+    cv::Point2f flow = followed.after[i] - points.before[i];
     const cv::Point2f deviation = flow - median;
-    if (!points.found[i] || std::hypot(deviation.x, deviation.y) > kMaxDeviation_px) flow = median;
-    person.joints[points.joints[i]].u += flow.x / scale;
-    person.joints[points.joints[i]].v += flow.y / scale;
+    if (followed.found[i] == 0 || std::hypot(deviation.x, deviation.y) > max_deviation_px) {
+      flow = median;
+    }
+    person.joints[points.joints[i]].u += flow.x;
+    person.joints[points.joints[i]].v += flow.y;
   }
 }
 
@@ -85,44 +84,20 @@ void dropJointsOutside(const SceneGrid& grid, Person& person) {
 
 }  // namespace
 
-void TrackCarrier::buildPyramid(const RgbdFrame& frame) {
-  if (current_stamp_ns_ == frame.stamp_ns && !current_.empty()) return;
-  cv::Mat grey, small;
-  const int width = std::min(kFlowWidth, frame.color.cols);
-  scale_ = static_cast<float>(width) / static_cast<float>(frame.color.cols);
-  const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * scale_)));
-  cv::resize(frame.color, small, {width, height}, 0, 0, cv::INTER_AREA);
-  cv::cvtColor(small, grey, cv::COLOR_RGB2GRAY);
-  current_.clear();
-  cv::buildOpticalFlowPyramid(grey, current_, kWindow, kPyramidLevels);
-  current_stamp_ns_ = frame.stamp_ns;
-}
-
-void TrackCarrier::carry(const RgbdFrame& frame, const SceneGrid& grid,
-                         std::vector<PersonTrack>& tracks) {
-  buildPyramid(frame);
-  const bool comparable = !last_.empty() && last_[0].size() == current_[0].size();
-  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 8, 0.05);
+void carryTracks(const FlowTracker& flow, const SceneGrid& grid, std::vector<PersonTrack>& tracks) {
+  const float step = static_cast<float>(grid.step);
+  const float max_deviation_px = kMaxDeviation * step * static_cast<float>(grid.cols);
   for (PersonTrack& track : tracks) {
     track.fresh = false;
-    if (!comparable) continue;
-    Points points = pointsOf(track, grid, scale_);
+    const PersonPoints points = pointsOf(track, grid);
     if (points.before.empty()) continue;
-    cv::calcOpticalFlowPyrLK(last_, current_, points.before, points.after, points.found,
-                             cv::noArray(), kWindow, kPyramidLevels, stop);
-    const cv::Point2f median = medianFlow(points);
-    moveJoints(points, median, scale_, track.person);
+    const FollowedPoints followed = flow.follow(points.before);
+    const cv::Point2f median = medianFlow(points.before, followed);
+    moveJoints(points, followed, median, max_deviation_px, track.person);
     dropJointsOutside(grid, track.person);
-    const float cell_px = static_cast<float>(grid.step) * scale_;
-    moveCells(grid, static_cast<int>(std::lround(median.x / cell_px)),
-              static_cast<int>(std::lround(median.y / cell_px)), track.cells);
+    moveCells(grid, static_cast<int>(std::lround(median.x / step)),
+              static_cast<int>(std::lround(median.y / step)), track.cells);
   }
-}
-
-void TrackCarrier::remember(const RgbdFrame& frame) {
-  buildPyramid(frame);
-  last_.swap(current_);
-  current_.clear();
 }
 
 void mergeDetections(const People& people, const SceneGrid& grid,

@@ -42,7 +42,9 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   }
   Stopwatch watch;
   const ModelView& view = mapper_.view();
-  out.segmentation = segmenter_.segment(frame, out.seen.people, view.empty() ? nullptr : &view);
+  out.flow = flow_.advance(frame);
+  out.segmentation =
+      segmenter_.segment(frame, flow_, out.seen.people, view.empty() ? nullptr : &view);
   out.segmentation_ms = watch.lapMs();
   RgbdFrame still = frame;
   still.depth = out.segmentation.static_depth;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "posefusion/core/frame.hpp"
+#include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/config.hpp"
@@ -28,10 +29,13 @@ class PeopleSegmenter {
   explicit PeopleSegmenter(const SegmentationConfig& config);
   ~PeopleSegmenter();
 
-  /// `background` is the map rendered at the pose of the previous frame, or null while there is no
-  /// map: what agrees with it is no person. `up_camera` is the upward direction in the camera frame
-  /// when known (TF or configuration).
-  Segmentation segment(const RgbdFrame& frame, const People& people, const ModelView* background,
+  /// `flow` has been advanced to this frame (once for each frame, also while there is nobody): it
+  /// carries people from the last frame into this one. After a change of the image size nobody is
+  /// carried. `background` is the map rendered at the pose of the previous frame, or null while
+  /// there is no map: what agrees with it is no person. `up_camera` is the upward direction in the
+  /// camera frame when known (TF or configuration).
+  Segmentation segment(const RgbdFrame& frame, const FlowTracker& flow, const People& people,
+                       const ModelView* background,
                        const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);
   void reset();
 

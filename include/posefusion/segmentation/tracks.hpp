@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <vector>
 
+#include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/appearance.hpp"
 #include "posefusion/segmentation/grid.hpp"
@@ -22,27 +22,11 @@ struct PersonTrack {
   ColourHistogram colour;  ///< of the person; total() is 0 while nothing is known
 };
 
-/// Moves people from the last frame into the next by sparse optical flow (Lucas and Kanade,
-/// pyramidal) of their joints and of samples of their masks: a joint follows its own flow where
-/// that agrees with the person's median, else the median.
-class TrackCarrier {
- public:
-  /// Moves all tracks into `frame`; the last frame is the one of the previous call of remember().
-  void carry(const RgbdFrame& frame, const SceneGrid& grid, std::vector<PersonTrack>& tracks);
-  /// Keeps what the next carry() needs of this frame.
-  void remember(const RgbdFrame& frame);
-  void forget() {
-    last_.clear();
-    current_stamp_ns_ = -1;
-  }
-
- private:
-  void buildPyramid(const RgbdFrame& frame);
-
-  std::vector<cv::Mat> last_, current_;
-  std::int64_t current_stamp_ns_ = -1;
-  float scale_ = 1.0F;  ///< pyramid pixels per frame pixel
-};
+/// Moves people from the last frame into the newest one by the sparse optical flow of their joints
+/// and of samples of their masks: a joint follows its own flow where that agrees with the person's
+/// median, else the median. `grid`: of the newest frame, of the same size as that of the last one;
+/// `flow`: advanced to the newest frame. Where the flow knows no last frame, people stay in place.
+void carryTracks(const FlowTracker& flow, const SceneGrid& grid, std::vector<PersonTrack>& tracks);
 
 /// Puts newly detected people in the place of the tracks they continue; the others become new
 /// tracks. A person continues the track that holds most of its joints, at least a third. Joints

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "posefusion/blur/gate.hpp"
+#include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/detector.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion/slam/config.hpp"
@@ -23,6 +24,7 @@ struct SeenFrame {
 /// A frame after the whole chain.
 struct ProcessedFrame {
   SeenFrame seen;
+  SparseFlow flow;  ///< from the last sharp frame; empty for a frame that is not mapped
   Segmentation segmentation;
   double segmentation_ms = 0;
   FrameStatus status;
@@ -50,6 +52,7 @@ class Pipeline {
   Rectifier rectifier_;
   BlurGate gate_;
   std::unique_ptr<PoseDetector> detector_;
+  FlowTracker flow_;
   PeopleSegmenter segmenter_;
   Mapper mapper_;
 };
