@@ -59,6 +59,13 @@ Vector6d logSe3(const Eigen::Isometry3d& T) {
   return twist;
 }
 
+Matrix6d adjoint(const Eigen::Isometry3d& T) {
+  Matrix6d A = Matrix6d::Zero();
+  A.topLeftCorner<3, 3>() = A.bottomRightCorner<3, 3>() = T.linear();
+  A.topRightCorner<3, 3>() = hat(T.translation()) * T.linear();
+  return A;
+}
+
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d out = T;
   out.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();

@@ -22,10 +22,11 @@ void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
 }  // namespace
 
 void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config) {
+  full_camera = frame.camera;
   camera = frame.camera.shrunk(config.shrink);
   const cv::Size size(camera.width, camera.height);
-  depthInMetres(frame, config.min_depth_m, config.max_depth_m, full_depth_m_);
-  shrinkDepth(full_depth_m_, config.shrink, depth_m);
+  depthInMetres(frame, config.min_depth_m, config.max_depth_m, full_depth_m);
+  shrinkDepth(full_depth_m, config.shrink, depth_m);
   valid_pixels = cv::countNonZero(depth_m);
   cv::resize(frame.color, color, size, 0, 0, cv::INTER_AREA);
 

@@ -46,9 +46,9 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   out.segmentation =
       segmenter_.segment(frame, flow_, out.seen.people, view.empty() ? nullptr : &view);
   out.segmentation_ms = watch.lapMs();
-  RgbdFrame still = frame;
-  still.depth = out.segmentation.static_depth;
-  out.status = mapper_.process(still, out.segmentation.mask);
+  StaticFrame still{frame, out.segmentation.mask, out.flow};
+  still.frame.depth = out.segmentation.static_depth;
+  out.status = mapper_.process(still);
   return out;
 }
 

@@ -11,8 +11,14 @@ namespace pf {
 namespace {
 
 // A surfel that so many frames have supported counts fully. Until then it may belong to somebody
-// who moves and was not masked; where everything is new, equal weights change nothing.
+// who moves and was not masked. It never counts for nothing: a turn shows little but new surfels.
 constexpr float kFullSupportFrames = 30.0F;
+constexpr float kLeastWeight = 0.2F;
+constexpr float kFillSupport = 1.0F;
+
+float weightOf(float support) {
+  return std::clamp(support * (1.0F / kFullSupportFrames), kLeastWeight, 1.0F);
+}
 
 /// Mean over the nearest surface of a 2x2 block of `fine`, into pixel (u, v) of `coarse`.
 void halvePixel(const ModelPlanes& fine, int u, int v, ModelPlanes& coarse) {
@@ -40,6 +46,33 @@ void halvePixel(const ModelPlanes& fine, int u, int v, ModelPlanes& coarse) {
   for (int i = 0; i < 3; ++i) coarse.normal[i].at<float>(v, u) = normal[i] / length;
   coarse.intensity.at<float>(v, u) = intensity * share;
   coarse.support.at<float>(v, u) = support * share;
+}
+
+/// The view, and the frame where the view shows nothing or something well behind the frame's
+/// surface.
+void fillFrom(const FrameLevel& frame, const ModelView& view, ModelPlanes& planes) {
+  view.depth_m.copyTo(planes.depth_m);
+  view.normal_x.copyTo(planes.normal[0]);
+  view.normal_y.copyTo(planes.normal[1]);
+  view.normal_z.copyTo(planes.normal[2]);
+  view.intensity.copyTo(planes.intensity);
+  view.support.copyTo(planes.support);
+  parallelFor(view.depth_m.rows, 16, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      const float* seen = frame.depth_m.ptr<float>(v);
+      for (int u = 0; u < view.depth_m.cols; ++u) {
+        const float known = view.depth_m.at<float>(v, u);
+        const bool hides = known <= 0 || seen[u] + surfaceTolerance(seen[u], 5.0F) < known;
+        if (seen[u] <= 0 || !hides || frame.normal_z.at<float>(v, u) >= 0) continue;
+        planes.depth_m.at<float>(v, u) = seen[u];
+        planes.normal[0].at<float>(v, u) = frame.normal_x.at<float>(v, u);
+        planes.normal[1].at<float>(v, u) = frame.normal_y.at<float>(v, u);
+        planes.normal[2].at<float>(v, u) = frame.normal_z.at<float>(v, u);
+        planes.intensity.at<float>(v, u) = frame.intensity.at<float>(v, u);
+        planes.support.at<float>(v, u) = kFillSupport;
+      }
+    }
+  });
 }
 
 void halve(const ModelPlanes& fine, ModelPlanes& coarse) {
@@ -80,7 +113,7 @@ void ModelPoints::assign(const PinholeCamera& camera, const ModelPlanes& planes)
       ny[count] = normal[1][u];
       nz[count] = normal[2][u];
       intensity[count] = grey[u];
-      weight[count] = std::min(1.0F, support[u] * (1.0F / kFullSupportFrames));
+      weight[count] = weightOf(support[u]);
       ++count;
     }
   }
@@ -91,13 +124,14 @@ void ModelPoints::assign(const PinholeCamera& camera, const ModelPlanes& planes)
   }
 }
 
-void ModelPyramid::assign(const ModelView& view) {
-  planes_[0].depth_m = view.depth_m;
-  planes_[0].normal[0] = view.normal_x;
-  planes_[0].normal[1] = view.normal_y;
-  planes_[0].normal[2] = view.normal_z;
-  planes_[0].intensity = view.intensity;
-  planes_[0].support = view.support;
+void ModelPyramid::assign(const ModelView& view, const FrameLevel* fill) {
+  ModelPlanes& finest = planes_[0];
+  if (fill != nullptr) {
+    fillFrom(*fill, view, finest);
+  } else {
+    finest = {
+        view.depth_m, {view.normal_x, view.normal_y, view.normal_z}, view.intensity, view.support};
+  }
   PinholeCamera camera = view.camera;
   for (int i = 0; i < kLevels; ++i) {
     if (i > 0) {

@@ -23,6 +23,9 @@ Eigen::Isometry3d expSe3(const Vector6d& twist);
 /// Twist of a rigid motion; inverse of expSe3 for rotations below pi.
 Vector6d logSe3(const Eigen::Isometry3d& T);
 
+/// Takes twists of one frame to another: exp(adjoint(T) * twist) = T * exp(twist) * T^-1.
+Matrix6d adjoint(const Eigen::Isometry3d& T);
+
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 

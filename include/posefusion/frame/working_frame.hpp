@@ -27,12 +27,14 @@ struct WorkingFrame {
   cv::Mat color;                           ///< CV_8UC3 R G B
   std::array<FrameLevel, kLevels> levels;  ///< finest first; level 0 has the camera above
   int valid_pixels = 0;                    ///< of depth_m
+  PinholeCamera full_camera;
+  cv::Mat full_depth_m;  ///< CV_32FC1, full size, 0 = invalid
 
   /// Prepares everything from a frame; `mask` (255 = person) may be empty. Reuses memory.
   void assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config);
 
  private:
-  cv::Mat full_depth_m_, smooth_m_;
+  cv::Mat smooth_m_;
 };
 
 }  // namespace pf

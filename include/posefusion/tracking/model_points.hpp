@@ -32,8 +32,10 @@ struct ModelPoints {
 /// The points of a model view on the levels of the pyramid, finest first.
 class ModelPyramid {
  public:
+  /// `fill`: finest level of the frame that was fused at the view's pose; it stands in, with little
+  /// weight, where the view shows nothing or something well behind. Null where there is none.
   /// Reuses memory.
-  void assign(const ModelView& view);
+  void assign(const ModelView& view, const FrameLevel* fill = nullptr);
   const ModelPoints& level(int i) const { return levels_[i]; }
 
  private:

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "posefusion/frame/flow.hpp"
+#include "posefusion/slam/status.hpp"
+#include "posefusion/tracking/rotation.hpp"
+#include "posefusion/tracking/tracker.hpp"
+
+namespace pf {
+
+/// The map as rendered from a pose, ready for tracking.
+struct RenderedModel {
+  const ModelPyramid& points;
+  Eigen::Isometry3d T_map_view;
+};
+
+/// Renders the map from about this pose: the answer may be of another pose nearby. Valid until the
+/// next call.
+using ModelRenderer = std::function<RenderedModel(const Eigen::Isometry3d& T_map_camera)>;
+
+/// Where a frame is, and how far that is believed.
+struct Location {
+  TrackingState state = TrackingState::initializing;
+  FrameOutcome outcome = FrameOutcome::fused;  ///< `fused`: it may be
+  bool located = false;
+  bool is_recent_return = false;  ///< found again a short time ago: the map must not lose by it
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  TrackingResult tracking;
+  SparseMotion motion;
+  std::string detail;
+};
+
+/// Finds each frame in the map: a prior from the corners' motion (or constant velocity where there
+/// are too few), alignment from it and, where that fails, from other starts, and a verdict. Carries
+/// the pose by dead reckoning while alignment fails. Coming back after a loss takes proof over
+/// several frames. Not thread safe.
+class Localiser {
+ public:
+  explicit Localiser(const TrackingConfig& config);
+
+  /// The first frame of a map.
+  Location begin(const WorkingFrame& frame, std::int64_t stamp_ns,
+                 const Eigen::Isometry3d& T_map_camera);
+
+  /// Any later frame. `flow` leads to it from the frame before. A `forced` frame (see BlurScore) is
+  /// not believed enough to be fused.
+  Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
+                  bool forced, const ModelRenderer& render);
+
+  TrackingState state() const { return state_; }
+  /// The last pose of a located frame.
+  const Eigen::Isometry3d& lastPose() const { return T_map_located_; }
+
+  void reset() { *this = Localiser(config_); }
+
+ private:
+  struct Verdict {
+    FrameOutcome outcome = FrameOutcome::fused;
+    std::string detail;
+  };
+  /// The frame before: what the next prediction starts from.
+  struct Previous {
+    std::int64_t stamp_ns = 0;
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    Matrix6d covariance =
+        Matrix6d::Zero();  ///< twist in the camera frame, since the last trusted one
+    Vector6d velocity = Vector6d::Zero();  ///< twist per second, camera frame
+    cv::Mat depth_m;                       ///< full size
+    SmallImage small;
+  };
+
+  PosePrior predict(const SparseMotion& motion, double elapsed_s) const;
+  TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
+                       const SparseMotion& motion, const ModelRenderer& render,
+                       Verdict& verdict) const;
+  Verdict judge(const WorkingFrame& frame, const TrackingResult& result, const PosePrior& prior,
+                const SparseMotion& motion) const;
+  void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
+  void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
+  void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
+             std::int64_t stamp_ns, double elapsed_s);
+  void remember(const WorkingFrame& frame, std::int64_t stamp_ns);
+
+  TrackingConfig config_;
+  TrackingState state_ = TrackingState::initializing;
+  Previous previous_;
+  Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
+  Brightness brightness_;
+  std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that was believed
+  int untrusted_in_a_row_ = 0;
+  int reckoned_in_a_row_ = 0;  ///< of those, located by dead reckoning
+  int proofs_ = 0;             ///< frames in a row that looked right since the loss
+  int frames_since_return_ = 1 << 20;
+};
+
+}  // namespace pf

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "posefusion/tracking/result.hpp"
+#include "posefusion/tracking/sparse_motion.hpp"
+
+namespace pf {
+
+enum class TrackingState {
+  initializing,  ///< no frame has been fused yet
+  tracking,      ///< located, fused
+  doubtful,      ///< located for now by dead reckoning or by an alignment that is not believed; not
+                 ///< fused
+  lost           ///< not located
+};
+
+/// What became of a frame, and why it was not fused.
+enum class FrameOutcome {
+  fused,
+  bad_input,      ///< sizes, encodings or stamps that cannot be used
+  blurred,        ///< dropped by the gate
+  no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)
+  not_converged,  ///< the alignment did not settle
+  few_inliers,    ///< too little of the frame agrees with the model
+  degenerate,     ///< the images leave directions free, and no corners help
+  jumped,         ///< the motion is too large to be true
+  disagrees,      ///< alignment and corners tell of different motions
+  seen_through,   ///< the frame sees through too much of the model
+  unproven,       ///< after a loss: looks right, but not for long enough
+  forced          ///< passed the blur gate only because too many were dropped before it
+};
+
+std::string_view name(TrackingState state);
+std::string_view name(FrameOutcome outcome);
+
+/// The answer for one frame.
+struct FrameStatus {
+  std::int64_t stamp_ns = 0;
+  TrackingState state = TrackingState::initializing;
+  FrameOutcome outcome = FrameOutcome::fused;
+  bool located = false;  ///< the pose is this frame's; else it is the last one known
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  TrackingResult tracking;
+  SparseMotion motion;  ///< since the frame before
+  std::string detail;   ///< the reason in words
+  std::size_t surfels = 0;
+  bool map_full = false;   ///< the memory limit keeps new surfels out
+  double tracking_ms = 0;  ///< preprocessing, rendering and alignment
+  double fusion_ms = 0;    ///< fusion and cleaning
+};
+
+/// Why the frame was not fused: "bad_input: there is no depth image"; empty when it was.
+std::string reasonOf(const FrameStatus& status);
+
+}  // namespace pf

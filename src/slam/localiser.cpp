@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/localiser.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace pf {
+namespace {
+
+constexpr double kNanosecond = 1e-9;
+// Where no corners tell of the motion, the camera may have done anything a robot does.
+constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
+constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
+constexpr double kMaxExtrapolation_s = 0.2;
+// Alignment and prediction agree when their difference is within so many standard deviations
+// (squared; 6 degrees of freedom, 1 in 50000 by chance), or small anyway.
+constexpr double kMaxMahalanobis2 = 30.0;
+constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
+// Corners that can overrule an alignment, and an alignment that can overrule corners.
+constexpr int kManyCorners = 40;
+constexpr double kStrongInliers = 0.75, kStrongOverlap = 0.35, kStrongSeenThrough = 0.05;
+// Part of the model's points that a frame may see through: things are moved, people were fused.
+constexpr double kMaxSeenThrough = 0.25;
+// Dead reckoning: for how long, and at what speed, corners alone give a pose good enough to be
+// told.
+constexpr double kMaxReckoning_s = 0.6;
+constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
+// After a loss an alignment has to look better than usual, so often in a row, before it is
+// believed.
+constexpr int kProofs = 10;
+constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
+constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
+constexpr int kProbationFrames = 60;
+
+Matrix6d diagonal(double sigma_m, double sigma_rad) {
+  Vector6d variance;
+  variance.head<3>().setConstant(sigma_m * sigma_m);
+  variance.tail<3>().setConstant(sigma_rad * sigma_rad);
+  return variance.asDiagonal();
+}
+
+bool isWithin(const Eigen::Isometry3d& step, double shift_m, double turn_rad) {
+  return step.translation().norm() <= shift_m && logSo3(step.linear()).norm() <= turn_rad;
+}
+
+std::string percentOf(double part, double whole, const char* what) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.0f %% %s", whole > 0 ? 100.0 * part / whole : 0.0, what);
+  return text;
+}
+
+std::string stepText(const Eigen::Isometry3d& step, const char* what) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
+                logSo3(step.linear()).norm() * 180.0 / M_PI, what);
+  return text;
+}
+
+/// Is the alignment good enough to be believed without, or against, other evidence?
+bool isStrong(const TrackingResult& r, int valid_pixels, double inliers, double overlap,
+              double seen_through) {
+  return r.converged && r.free_directions == 0 && r.inliers >= inliers * r.candidates &&
+         r.candidates >= overlap * valid_pixels && r.seen_through <= seen_through * r.candidates;
+}
+
+}  // namespace
+
+Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
+
+Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
+                          const Eigen::Isometry3d& T_map_camera) {
+  Location location;
+  location.T_map_camera = location.tracking.T_map_camera = T_map_camera;
+  location.tracking.converged = true;
+  trust(location, stamp_ns, 0.0);
+  remember(frame, stamp_ns);
+  return location;
+}
+
+Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
+                           bool forced, const ModelRenderer& render) {
+  Location location;
+  const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
+  if (flow.from_ns == previous_.stamp_ns && flow.to_ns == stamp_ns &&
+      previous_.depth_m.size() == frame.full_depth_m.size()) {
+    location.motion =
+        estimateMotion(flow, {previous_.depth_m, frame.full_depth_m}, frame.full_camera);
+  }
+  const PosePrior prior = predict(location.motion, elapsed_s);
+  Verdict verdict;
+  location.tracking = align(frame, prior, location.motion, render, verdict);
+  if (forced && verdict.outcome == FrameOutcome::fused) {
+    verdict = {FrameOutcome::forced, "too blurred to be fused"};
+  }
+  location.outcome = verdict.outcome;
+  location.detail = verdict.detail;
+  if (state_ == TrackingState::lost) {
+    prove(frame, prior, location, stamp_ns, elapsed_s);
+  } else if (verdict.outcome == FrameOutcome::fused) {
+    trust(location, stamp_ns, elapsed_s);
+  } else {
+    distrust(location, prior, stamp_ns);
+  }
+  remember(frame, stamp_ns);
+  return location;
+}
+
+PosePrior Localiser::predict(const SparseMotion& motion, double elapsed_s) const {
+  PosePrior prior;
+  Eigen::Isometry3d step = motion.T_before_after;
+  Matrix6d noise = motion.covariance;
+  if (!motion.found) {
+    step = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
+    noise = diagonal(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
+                     kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+  }
+  prior.T_map_camera = previous_.T_map_camera * step;
+  const Matrix6d A = adjoint(step.inverse());
+  prior.covariance = A * previous_.covariance * A.transpose() + noise;
+  return prior;
+}
+
+/// Aligns from the prediction and, where the result is not believed, from other starts.
+TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prior,
+                                const SparseMotion& motion, const ModelRenderer& render,
+                                Verdict& verdict) const {
+  TrackingResult best;
+  best.T_map_camera = prior.T_map_camera;
+  const double pixels = static_cast<double>(frame.depth_m.total());
+  if (frame.valid_pixels < config_.min_valid_fraction * pixels) {
+    verdict = {FrameOutcome::no_depth,
+               percentOf(frame.valid_pixels, pixels, "of the pixels have depth")};
+    return best;
+  }
+  const auto attempt = [&](const Eigen::Isometry3d& guess) {
+    const RenderedModel model = render(guess);
+    const TrackingStart start{model.T_map_view, guess, prior, brightness_};
+    const TrackingResult result = track(frame, model.points, start, config_);
+    const Verdict found = judge(frame, result, prior, motion);
+    const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
+    if (!better) return false;
+    best = result;
+    verdict = found;
+    return found.outcome == FrameOutcome::fused;
+  };
+  if (attempt(prior.T_map_camera) || state_ == TrackingState::lost) return best;
+  if (config_.rotation_prealignment) {
+    const FrameLevel& coarse = frame.levels[kLevels - 1];
+    Eigen::Isometry3d turned = previous_.T_map_camera;
+    turned.linear() *=
+        alignRotation(previous_.small, {coarse.intensity, coarse.still}, coarse.camera).transpose();
+    if (attempt(turned)) return best;
+  }
+  attempt(previous_.T_map_camera);
+  return best;
+}
+
+Localiser::Verdict Localiser::judge(const WorkingFrame& frame, const TrackingResult& r,
+                                    const PosePrior& prior, const SparseMotion& motion) const {
+  const double pixels = static_cast<double>(frame.depth_m.total());
+  if (r.candidates < config_.min_valid_fraction * pixels) {
+    return {FrameOutcome::few_inliers,
+            percentOf(r.candidates, pixels, "of the pixels have a model")};
+  }
+  if (!r.converged) return {FrameOutcome::not_converged, ""};
+  if (r.inliers < config_.min_inlier_fraction * r.candidates) {
+    return {FrameOutcome::few_inliers, percentOf(r.inliers, r.candidates, "of the model agree")};
+  }
+  if (r.seen_through > kMaxSeenThrough * r.candidates) {
+    return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
+  }
+  if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
+  const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
+  if (isWithin(difference, kAgreeing_m, kAgreeing_rad)) return {};
+  const Vector6d error = logSe3(difference);
+  const Matrix6d covariance = prior.covariance + r.covariance;
+  if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
+  const std::string text = stepText(difference, "from the prediction");
+  if (!motion.found) return {FrameOutcome::jumped, text};
+  const bool overruled =
+      motion.inliers < kManyCorners &&
+      isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
+      isWithin(difference, config_.max_translation_m, config_.max_rotation_rad);
+  if (overruled) return {};
+  return {FrameOutcome::disagrees, text};
+}
+
+void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_s) {
+  location.T_map_camera = location.tracking.T_map_camera;
+  location.located = true;
+  location.outcome = FrameOutcome::fused;
+  location.is_recent_return = frames_since_return_ < kProbationFrames;
+  location.state = state_ = TrackingState::tracking;
+  if (elapsed_s > 0) {
+    previous_.velocity =
+        logSe3(previous_.T_map_camera.inverse() * location.T_map_camera) / elapsed_s;
+  }
+  ++frames_since_return_;
+  previous_.T_map_camera = T_map_located_ = location.T_map_camera;
+  previous_.covariance = location.tracking.covariance;
+  brightness_ = location.tracking.brightness;
+  trusted_ns_ = stamp_ns;
+  untrusted_in_a_row_ = reckoned_in_a_row_ = 0;
+}
+
+/// Not believed: the pose is carried on by the prediction, and told for as long as that is good.
+void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns) {
+  ++untrusted_in_a_row_;
+  const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - trusted_ns_);
+  const SparseMotion& motion = location.motion;
+  location.located =
+      (motion.found && motion.inliers >= kManyCorners && reckoned_s < kMaxReckoning_s &&
+       untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
+       isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
+  previous_.T_map_camera = prior.T_map_camera;
+  previous_.covariance = prior.covariance;
+  if (location.outcome == FrameOutcome::forced) {
+    previous_.T_map_camera = location.tracking.T_map_camera;
+    previous_.covariance = location.tracking.covariance;
+    location.located = true;
+  }
+  if (location.located) {
+    ++reckoned_in_a_row_;
+    T_map_located_ = previous_.T_map_camera;
+  }
+  const bool lost = !location.located && untrusted_in_a_row_ >= config_.lost_after_frames;
+  location.state = state_ = lost ? TrackingState::lost : TrackingState::doubtful;
+  location.T_map_camera = T_map_located_;
+  proofs_ = 0;
+}
+
+/// Lost: an alignment is believed once it has looked right for several frames that also fit each
+/// other.
+void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
+                      std::int64_t stamp_ns, double elapsed_s) {
+  const bool looks_right = location.outcome == FrameOutcome::fused &&
+                           isStrong(location.tracking, frame.valid_pixels, kProvenInliers,
+                                    kProvenOverlap, kProvenSeenThrough);
+  const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
+                                kProofStep_m, kProofStep_rad);
+  proofs_ = looks_right ? (follows ? proofs_ + 1 : 1) : 0;
+  if (proofs_ >= kProofs) {
+    frames_since_return_ = 0;
+    trust(location, stamp_ns, elapsed_s);
+    return;
+  }
+  if (looks_right) {
+    location.outcome = FrameOutcome::unproven;
+    location.detail = std::to_string(proofs_) + " of " + std::to_string(kProofs) + " frames";
+  }
+  previous_.T_map_camera = looks_right ? location.tracking.T_map_camera : prior.T_map_camera;
+  previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
+  previous_.velocity.setZero();
+  location.state = TrackingState::lost;
+  location.T_map_camera = T_map_located_;
+}
+
+void Localiser::remember(const WorkingFrame& frame, std::int64_t stamp_ns) {
+  const FrameLevel& coarse = frame.levels[kLevels - 1];
+  previous_.stamp_ns = stamp_ns;
+  frame.full_depth_m.copyTo(previous_.depth_m);
+  coarse.intensity.copyTo(previous_.small.intensity);
+  coarse.still.copyTo(previous_.small.still);
+}
+
+}  // namespace pf
