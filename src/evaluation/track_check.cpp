@@ -119,12 +119,12 @@ PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate,
   };
   if (facts.first_fall_ns) takeBefore(*facts.first_fall_ns);
   if (first.empty() && !pairs.empty()) takeBefore(pairs.front().estimate.stamp_ns + kAlignedNs);
-  const Eigen::Isometry3d T_truth_estimate = alignPoses(first);
   PlaceErrors errors;
+  errors.T_truth_estimate = alignPoses(first);
   errors.count = pairs.size();
   for (const PosePair& pair : pairs) {
     const Eigen::Vector3d position = pair.estimate.T_world_camera.translation();
-    const double error_m = distance(pair, T_truth_estimate * position);
+    const double error_m = distance(pair, errors.T_truth_estimate * position);
     if (error_m > kWrongDistance_m) ++errors.false_count;
     errors.worst_m = std::max(errors.worst_m, error_m);
   }

@@ -4,120 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <opencv2/imgproc.hpp>
-#include <utility>
+
+#include "plan_view.hpp"
 
 namespace pf {
 namespace {
 
-constexpr int kWidth = 1200, kTallest = 1000, kMargin = 30, kLegend = 104;
-constexpr int kFine = 2;            // drawn so much larger and scaled down: smooth lines
-constexpr float kSplat_m = 0.012F;  // half the side of a point of the surface
-constexpr float kWall_m = 1.0F;     // upright surface higher than this above the lowest is wall
+constexpr int kLegend = 104;
+constexpr int kFine = 2;                      // drawn so much larger and scaled down: smooth lines
 constexpr std::int64_t kGapNs = 500'000'000;  // the path is broken at longer ones
 const cv::Scalar kPaper(255, 255, 255), kInk(45, 45, 50), kTruth(30, 30, 30),
     kEstimate(0, 104, 210), kWrong(222, 30, 40);
-
-struct Range {
-  double low = 0, high = 0;
-  double size() const { return high - low; }
-};
-
-/// The range of the values without the outermost per cent on each side; of none: empty.
-void extend(std::vector<double> values, double cut, Range& range) {
-  if (values.empty()) return;
-  std::sort(values.begin(), values.end());
-  const auto skip = static_cast<std::size_t>(cut * static_cast<double>(values.size()));
-  range.low = std::min(range.low, values[skip]);
-  range.high = std::max(range.high, values[values.size() - 1 - skip]);
-}
-
-/// From the frame of the truth to the picture.
-class View {
- public:
-  explicit View(const Plan& plan) : up_(upOf(plan.truth)) {
-    // Axes of the picture: those of the frame where they lie level.
-    right_ = std::abs(up_.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-    right_ = (right_ - right_.dot(up_) * up_).normalized();
-    ahead_ = up_.cross(right_);
-    measure(plan);
-    if (v_.size() > u_.size()) {  // the long side lies across
-      std::swap(right_, ahead_);
-      right_ = -right_;
-      measure(plan);
-    }
-    const double across = kWidth - 2 * kMargin, along = kTallest - 2 * kMargin;
-    scale_ = std::min(across / std::max(0.5, u_.size()), along / std::max(0.5, v_.size()));
-    shift_ = 0.5 * (across - scale_ * u_.size());
-  }
-
-  double scale() const { return scale_; }  ///< pixels for a metre
-  int height() const { return 2 * kMargin + static_cast<int>(scale_ * v_.size()); }
-  const Eigen::Vector3d& up() const { return up_; }
-
-  cv::Point2d at(const Eigen::Vector3d& point) const {
-    return {kMargin + shift_ + scale_ * (right_.dot(point) - u_.low),
-            kMargin + scale_ * (v_.high - ahead_.dot(point))};
-  }
-
- private:
-  void measure(const Plan& plan) {
-    std::vector<double> u, v, path_u, path_v;
-    for (const auto& point : plan.surface) {
-      u.push_back(right_.dot(point.position.cast<double>()));
-      v.push_back(ahead_.dot(point.position.cast<double>()));
-    }
-    for (const auto* path : {&plan.truth, &plan.estimate}) {
-      for (const auto& pose : *path) {
-        path_u.push_back(right_.dot(pose.T_world_camera.translation()));
-        path_v.push_back(ahead_.dot(pose.T_world_camera.translation()));
-      }
-    }
-    u_ = {path_u.front(), path_u.front()};
-    v_ = {path_v.front(), path_v.front()};
-    extend(u, 0.002, u_);
-    extend(v, 0.002, v_);
-    extend(path_u, 0.0, u_);
-    extend(path_v, 0.0, v_);
-  }
-
-  Eigen::Vector3d up_, right_, ahead_;
-  Range u_, v_;
-  double scale_ = 1, shift_ = 0;
-};
-
-/// The surface from above: the highest point of each pixel.
-void drawSurface(const Plan& plan, const View& view, cv::Mat& picture) {
-  cv::Mat height(picture.size(), CV_32FC1, cv::Scalar(-std::numeric_limits<float>::max()));
-  const Eigen::Vector3f up = view.up().cast<float>();
-  std::vector<double> heights;
-  for (const auto& point : plan.surface) heights.push_back(up.dot(point.position));
-  Range range;
-  if (!heights.empty()) range = {heights.front(), heights.front()};
-  extend(std::move(heights), 0.01, range);
-  const int half = std::max(1, static_cast<int>(std::lround(kSplat_m * view.scale())));
-  for (const auto& point : plan.surface) {
-    const float level = up.dot(point.normal), h = up.dot(point.position);
-    if (level < -0.3F) continue;
-    const bool wall = level < 0.3F && h - static_cast<float>(range.low) > kWall_m;
-    const cv::Point2d at = view.at(point.position.cast<double>());
-    const cv::Rect splat(cvRound(at.x) - half, cvRound(at.y) - half, 2 * half + 1, 2 * half + 1);
-    const cv::Rect inside = splat & cv::Rect({0, 0}, picture.size());
-    // Faded, so that the paths stand out.
-    const auto faded = [](unsigned char c) { return cv::saturate_cast<uchar>(120 + 0.53 * c); };
-    const cv::Vec3b color =
-        wall ? cv::Vec3b(142, 146, 152)
-             : cv::Vec3b(faded(point.color[0]), faded(point.color[1]), faded(point.color[2]));
-    for (int y = inside.y; y < inside.br().y; ++y) {
-      for (int x = inside.x; x < inside.br().x; ++x) {
-        if (h <= height.at<float>(y, x)) continue;
-        height.at<float>(y, x) = h;
-        picture.at<cv::Vec3b>(y, x) = color;
-      }
-    }
-  }
-}
 
 /// Draws in the large picture, in pixels of the small one.
 class Pen {
@@ -151,7 +49,7 @@ class Pen {
   cv::Mat& image_;
 };
 
-void drawPath(const Trajectory& path, const View& view, const cv::Scalar& color, double width,
+void drawPath(const Trajectory& path, const PlanView& view, const cv::Scalar& color, double width,
               Pen& pen) {
   std::vector<cv::Point2d> points;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -164,7 +62,7 @@ void drawPath(const Trajectory& path, const View& view, const cv::Scalar& color,
   pen.line(points, color, width);
 }
 
-void drawMarks(const Plan& plan, const View& view, Pen& pen) {
+void drawMarks(const Plan& plan, const PlanView& view, Pen& pen) {
   const auto at = [&](const StampedPose& pose) {
     return view.at(pose.T_world_camera.translation());
   };
@@ -186,9 +84,9 @@ double roundBelow(double size) {
   return power * (size >= 5 * power ? 5 : size >= 2 * power ? 2 : 1);
 }
 
-void drawLegend(const Plan& plan, const View& view, int top, Pen& pen) {
+void drawLegend(const Plan& plan, const PlanView& view, int top, Pen& pen) {
   const double y = top + 30;
-  double x = kMargin;
+  double x = PlanView::kMargin;
   const auto entry = [&](const char* name, double width, const auto& draw) {
     draw(cv::Point2d(x, y - 5));
     pen.text(name, {x + 42, y});
@@ -204,9 +102,10 @@ void drawLegend(const Plan& plan, const View& view, int top, Pen& pen) {
   entry("wrong pose", 124, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 4, kWrong); });
   entry("start", 74, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 6, kInk); });
   entry("end", 74, [&](const cv::Point2d& p) { pen.square({p.x + 16, p.y}, 5, kInk); });
-  pen.text(plan.title, {kMargin, y + 40});
+  pen.text(plan.title, {PlanView::kMargin, y + 40});
 
-  const double length_m = roundBelow(200 / view.scale()), right = kWidth - kMargin;
+  const double length_m = roundBelow(200 / view.scale()),
+               right = PlanView::kWidth - PlanView::kMargin;
   const double left = right - length_m * view.scale();
   pen.line({{left, y - 5}, {right, y - 5}}, kInk, 3);
   for (const double end : {left, right}) pen.line({{end, y - 11}, {end, y + 1}}, kInk, 2);
@@ -228,9 +127,9 @@ Eigen::Vector3d upOf(const Trajectory& trajectory) {
 }
 
 cv::Mat drawPlan(const Plan& plan) {
-  const View view(plan);
-  cv::Mat room(view.height() + kLegend, kWidth, CV_8UC3, kPaper);
-  drawSurface(plan, view, room);
+  const PlanView view(plan);
+  cv::Mat room(view.height() + kLegend, PlanView::kWidth, CV_8UC3, kPaper);
+  view.drawSurface(plan, room);
   room.rowRange(view.height(), room.rows) = kPaper;
   cv::Mat large;
   cv::resize(room, large, {}, kFine, kFine, cv::INTER_LINEAR);

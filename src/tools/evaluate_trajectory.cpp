@@ -161,7 +161,7 @@ std::vector<SurfacePoint> surfaceFor(const TrajectoryQuestion& question,
 void savePlan(const TrajectoryQuestion& question, const Trajectory& truth,
               const Trajectory& estimate, const Answer& answer) {
   const auto pairs = matchPoses(truth, estimate);
-  const Eigen::Isometry3d T_truth_map = alignPoses(pairs);
+  const Eigen::Isometry3d& T_truth_map = answer.places.T_truth_estimate;
   Plan plan;
   plan.surface = surfaceFor(question, T_truth_map);
   const std::int64_t from = pairs.front().truth.stamp_ns, to = pairs.back().truth.stamp_ns;
@@ -174,7 +174,8 @@ void savePlan(const TrajectoryQuestion& question, const Trajectory& truth,
   }
   plan.wrong = answer.wrong;
   char title[160];
-  std::snprintf(title, sizeof(title), "ATE %.3f m RMSE, %zu poses, %zu wrong, last pose %.3f m off",
+  std::snprintf(title, sizeof(title),
+                "ATE %.3f m RMSE, %zu poses, %zu wrong, last pose %.3f m off; aligned at the start",
                 answer.absolute.rmse, estimate.size(), answer.wrong.size(), answer.last_m);
   plan.title = title;
   savePng(question.plan, drawPlan(plan));

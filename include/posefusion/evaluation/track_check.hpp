@@ -45,6 +45,7 @@ struct PlaceErrors {
   std::size_t count = 0;        ///< poses that have a true one
   std::size_t false_count = 0;  ///< of them farther off than kWrongDistance_m; drift counts too
   double worst_m = 0;
+  Eigen::Isometry3d T_truth_estimate = Eigen::Isometry3d::Identity();  ///< the alignment
 };
 
 /// Throws InputError when no pose has a true one.
