@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/evaluation/masks.hpp"
+#include "posefusion/run/mask_folders.hpp"
 
 namespace pf {
 namespace {

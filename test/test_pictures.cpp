@@ -4,6 +4,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/run/map_picture.hpp"
 #include "posefusion/run/people_picture.hpp"
+#include "posefusion/run/plan_picture.hpp"
 #include "posefusion/run/plot.hpp"
 
 namespace pf {
@@ -108,6 +109,76 @@ TEST(Plot, ShowsTruthEstimateAndDifference) {
   cv::Mat reddish;  // thin lines are blended with what is below them
   cv::inRange(plot, cv::Scalar(180, 0, 0), cv::Scalar(255, 130, 130), reddish);
   EXPECT_GT(cv::countNonZero(reddish), 50);
+}
+
+/// A floor of 4 x 3 m in the plane z = 0 and a ceiling over it, z up.
+std::vector<SurfacePoint> flatRoom() {
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < 400; ++i) {
+    for (int j = 0; j < 300; ++j) {
+      SurfacePoint point;
+      point.position =
+          Eigen::Vector3f(0.01F * static_cast<float>(i), 0.01F * static_cast<float>(j), 0);
+      point.normal = Eigen::Vector3f::UnitZ();
+      point.color = {0, 200, 0};
+      points.push_back(point);
+      point.position.z() = 2.5F;
+      point.normal = -Eigen::Vector3f::UnitZ();
+      point.color = {200, 0, 0};
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+/// Looks along x, the image's y down, walks along the x axis at y = 1.
+Trajectory straightWalk(double y) {
+  Trajectory walk;
+  for (int i = 0; i < 90; ++i) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    T.translation() = Eigen::Vector3d(0.5 + 0.03 * i, y, 1.2);
+    walk.push_back({i * 33'000'000LL, T});
+  }
+  return walk;
+}
+
+TEST(Plan, UpIsThatOfTheCameraOnTheNearestAxis) {
+  Trajectory walk = straightWalk(1);
+  EXPECT_TRUE(upOf(walk).isApprox(Eigen::Vector3d::UnitZ(), 0));
+  for (auto& pose : walk) pose.T_world_camera.rotate(expSo3({0.3, 0, 0}));  // looks down a little
+  EXPECT_TRUE(upOf(walk).isApprox(Eigen::Vector3d::UnitZ(), 0));
+  const Eigen::Matrix3d R = expSo3({0.7, 0.4, 0});  // a world that nobody levelled
+  walk = straightWalk(1);
+  for (auto& pose : walk) pose.T_world_camera = R * pose.T_world_camera;
+  EXPECT_TRUE(upOf(walk).isApprox(R.col(2), 1e-9));
+}
+
+TEST(Plan, ShowsTheFloorBothPathsAndWrongPoses) {
+  Plan plan{flatRoom(), straightWalk(1), straightWalk(1.5), {}, "a title"};
+  const cv::Mat right = drawPlan(plan);
+  EXPECT_EQ(right.cols, 1200);
+  const int floor = countColor(right, {120, 226, 120});
+  EXPECT_GT(floor, 1000 * 700) << "the ceiling does not hide it";
+  EXPECT_GT(countColor(right, {30, 30, 30}), 500) << "truth";
+  EXPECT_GT(countColor(right, {0, 104, 210}), 500) << "estimate";
+  const int in_legend = countColor(right, {222, 30, 40});
+  plan.wrong = {10, 11, 60};
+  EXPECT_GT(countColor(drawPlan(plan), {222, 30, 40}), 2 * in_legend);
+}
+
+TEST(Plan, TheLongSideLiesAcross) {
+  Plan plan{flatRoom(), straightWalk(1), straightWalk(1), {}, ""};
+  const cv::Mat lying = drawPlan(plan);
+  const Eigen::Isometry3d turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  for (auto* path : {&plan.truth, &plan.estimate}) {
+    for (auto& pose : *path) pose.T_world_camera = turn * pose.T_world_camera;
+  }
+  for (auto& point : plan.surface) point.position = turn.cast<float>() * point.position;
+  const cv::Mat standing = drawPlan(plan);
+  EXPECT_NEAR(standing.rows, lying.rows, 2);
+  plan.surface.clear();
+  EXPECT_EQ(drawPlan(plan).cols, 1200) << "a path alone";
 }
 
 }  // namespace

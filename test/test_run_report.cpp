@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,11 @@ TEST(RunStatistics, CountsEachFrameOnce) {
   EXPECT_EQ(f.blurred, 1U);
   EXPECT_EQ(f.bad, 1U);
   EXPECT_EQ(f.lost, 2U);
+  EXPECT_DOUBLE_EQ(f.poseShare(), 2.0 / 6);
+  EXPECT_DOUBLE_EQ(f.sharpPoseShare(), 2.0 / 5);
+  EXPECT_EQ(f.by_outcome.at("fused"), 2U);
+  EXPECT_EQ(f.by_outcome.at("few_inliers"), 1U);
+  EXPECT_EQ(f.by_state.at("initializing"), 6U);
 }
 
 TEST(RunStatistics, MedianAndTailOfAStage) {
@@ -101,12 +107,19 @@ TEST_F(RunReportTest, SummaryHasTheNamesThatStay) {
   EXPECT_EQ(s.at("frames").at("blurred"), 0);
   EXPECT_EQ(s.at("frames").at("tracked"), 29);
   EXPECT_EQ(s.at("frames").at("lost"), 1);
+  EXPECT_NEAR(s.at("frames").at("pose_share").get<double>(), 29.0 / 30, 1e-12);
+  EXPECT_NEAR(s.at("frames").at("pose_share_of_sharp").get<double>(), 29.0 / 30, 1e-12);
+  EXPECT_EQ(s.at("frames").at("by_state").at("initializing"), 30);
+  EXPECT_EQ(s.at("frames").at("by_outcome").at("not_converged"), 1);
   EXPECT_EQ(s.at("surfels"), 0);
   EXPECT_EQ(s.at("stages").at("fusion").at("median_ms"), 1);
   EXPECT_TRUE(s.at("stages").at("tracking").contains("p95_ms"));
   EXPECT_GT(s.at("frames_per_second").get<double>(), 0);
   EXPECT_GT(s.at("peak_memory_mb").get<double>(), 1);
   EXPECT_NEAR(s.at("ate_rmse_m").get<double>(), 0, 1e-9);
+  // Pose 7 is missing: 0.13 m from pose 6, once in 30 frames.
+  EXPECT_NEAR(s.at("ate_held_rmse_m").get<double>(), 0.13 / std::sqrt(30), 1e-6);
+  EXPECT_EQ(s.at("wrong_poses"), 0);
   EXPECT_NEAR(s.at("rpe_trans_m_per_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(s.at("rpe_rot_deg_per_s").get<double>(), 0, 1e-6);
   EXPECT_EQ(s.at("configuration").at("blur").at("enabled"), true);

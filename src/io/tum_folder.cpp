@@ -73,22 +73,30 @@ std::vector<Entry> matchLists(const fs::path& folder, InputReport& report) {
   return entries;
 }
 
+/// The pairs that the lists of a folder name. Throws InputError when there are none.
+std::vector<Entry> readEntries(const fs::path& folder, InputReport& report) {
+  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is no folder");
+  const bool lists = fs::exists(folder / "rgb.txt") && fs::exists(folder / "depth.txt");
+  std::vector<Entry> entries;
+  if (fs::exists(folder / "associations.txt")) {
+    entries = readAssociations(folder / "associations.txt");
+  } else if (lists) {
+    entries = matchLists(folder, report);
+  } else {
+    throw InputError(folder.string() +
+                     ": is no TUM folder, expected associations.txt, or rgb.txt and depth.txt in "
+                     "it");
+  }
+  if (entries.empty()) {
+    throw InputError(folder.string() + ": lists no pair of a colour and a depth image");
+  }
+  return entries;
+}
+
 class TumFolder : public FrameSource {
  public:
   TumFolder(const std::string& folder, const std::string& camera_file) : folder_(folder) {
-    if (!fs::is_directory(folder_)) throw InputError(folder + ": is no folder");
-    const bool lists = fs::exists(folder_ / "rgb.txt") && fs::exists(folder_ / "depth.txt");
-    if (fs::exists(folder_ / "associations.txt")) {
-      entries_ = readAssociations(folder_ / "associations.txt");
-    } else if (lists) {
-      entries_ = matchLists(folder_, report_);
-    } else {
-      throw InputError(folder +
-                       ": is no TUM folder, expected associations.txt, or rgb.txt and "
-                       "depth.txt in it");
-    }
-    if (entries_.empty())
-      throw InputError(folder + ": lists no pair of a colour and a depth image");
+    entries_ = readEntries(folder_, report_);
     readCamera(camera_file);
   }
 
@@ -174,6 +182,13 @@ class TumFolder : public FrameSource {
 std::unique_ptr<FrameSource> openTumFolder(const std::string& folder,
                                            const std::string& camera_file) {
   return std::make_unique<TumFolder>(folder, camera_file);
+}
+
+std::vector<std::int64_t> listTumFrames(const std::string& folder) {
+  InputReport report;
+  std::vector<std::int64_t> stamps_ns;
+  for (const Entry& entry : readEntries(folder, report)) stamps_ns.push_back(entry.stamp_ns);
+  return stamps_ns;
 }
 
 }  // namespace pf

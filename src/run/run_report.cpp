@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "posefusion/evaluation/track_check.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
@@ -33,7 +34,11 @@ ordered_json framesJson(const FrameCounts& f) {
           {"bad", f.bad},
           {"blurred", f.blurred},
           {"tracked", f.tracked},
-          {"lost", f.lost}};
+          {"lost", f.lost},
+          {"pose_share", f.poseShare()},
+          {"pose_share_of_sharp", f.sharpPoseShare()},
+          {"by_state", f.by_state},
+          {"by_outcome", f.by_outcome}};
 }
 
 std::string fixed(double value, int decimals) {
@@ -48,7 +53,10 @@ void RunReport::add(const ProcessedFrame& frame) {
   seconds_ += 1e-3 * watch_.lapMs();
   statistics_.add(frame);
   strip_.add(frame);
-  if (frame.status.outcome != FrameOutcome::fused) return;
+  if (frame.status.outcome != FrameOutcome::bad_input) {
+    frames_ns_.push_back(frame.status.stamp_ns);
+  }
+  if (!hasPose(frame.status)) return;
   camera_ = frame.seen.frame.camera;
   trajectory_.push_back({frame.status.stamp_ns, frame.status.T_map_camera});
 }
@@ -61,7 +69,10 @@ std::optional<RunErrors> RunReport::errors() const {
   const auto pairs = matchPoses(truth_, trajectory_);
   if (pairs.size() < 3) return std::nullopt;
   RunErrors errors;
-  errors.ate_m = absoluteError(pairs, align(pairs, false));
+  const Alignment alignment = align(pairs, false);
+  errors.ate_m = absoluteError(pairs, alignment);
+  errors.held_m = heldError(truth_, trajectory_, frames_ns_, alignment);
+  errors.wrong = wrongPoses(truth_, trajectory_).size();
   errors.per_second = relativeErrorPerSecond(truth_, trajectory_);
   return errors;
 }
@@ -77,6 +88,8 @@ std::string RunReport::summary(std::size_t surfels) const {
   out["peak_memory_mb"] = peakMemoryMb();
   if (const auto e = errors()) {
     out["ate_rmse_m"] = e->ate_m.rmse;
+    out["ate_held_rmse_m"] = e->held_m.rmse;
+    out["wrong_poses"] = e->wrong;
     if (e->per_second.translation_m.count > 0) {
       out["rpe_trans_m_per_s"] = e->per_second.translation_m.rmse;
       out["rpe_rot_deg_per_s"] = e->per_second.rotation_deg.rmse;
@@ -108,6 +121,8 @@ std::string RunReport::table() const {
   std::ostringstream out;
   out << "frames   " << f.read << " read, " << f.tracked << " tracked, " << f.lost << " lost, "
       << f.blurred << " blurred, " << f.bad << " bad\n";
+  out << "poses    " << fixed(100 * f.poseShare(), 2) << " % of the frames, "
+      << fixed(100 * f.sharpPoseShare(), 2) << " % of those not blurred\n";
   out << "speed    " << fixed(framesPerSecond(), 1) << " frames per second\n";
   for (const auto& [name, time] : statistics_.stages()) {
     out << "         " << std::left << std::setw(20) << name << std::right << std::setw(7)
@@ -115,8 +130,10 @@ std::string RunReport::table() const {
         << " ms 95 %\n";
   }
   if (const auto e = errors()) {
-    out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count
-        << " poses\n";
+    out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count << " poses, "
+        << fixed(e->held_m.rmse, 4) << " m with the last pose held where there is none\n"
+        << "wrong    " << e->wrong
+        << " poses (motion over a second off by more than 0.10 m or 5 deg)\n";
     out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
         << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";
   }

@@ -14,10 +14,22 @@ StageTime summarise(std::vector<double> times) {
   return {times[times.size() / 2], times[times.size() * 95 / 100]};
 }
 
+double shareOf(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
 }  // namespace
+
+bool hasPose(const FrameStatus& status) { return status.outcome == FrameOutcome::fused; }
+
+double FrameCounts::poseShare() const { return shareOf(posed, read); }
+double FrameCounts::sharpPoseShare() const { return shareOf(posed, read - blurred); }
 
 void RunStatistics::add(const ProcessedFrame& frame) {
   ++frames_.read;
+  ++frames_.by_state[std::string(name(frame.status.state))];
+  ++frames_.by_outcome[std::string(name(frame.status.outcome))];
+  if (hasPose(frame.status)) ++frames_.posed;
   switch (frame.status.outcome) {
     case FrameOutcome::bad_input:
       ++frames_.bad;

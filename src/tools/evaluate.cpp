@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How good a trajectory, a run, or masks are.
+// How good a trajectory, a run, masks, or reported covariances are.
 #include "evaluate.hpp"
 
 #include <CLI/CLI.hpp>
@@ -9,41 +9,75 @@
 namespace pf {
 namespace {
 
+/// What two of the commands ask: something true, something to be checked.
+struct PairQuestion {
+  std::string truth, checked;
+  bool json = false;
+};
+
+CLI::Option* addTrajectoryOptions(CLI::App& app, TrajectoryQuestion& question) {
+  app.add_option("truth", question.truth,
+                 "sequence (TUM folder with groundtruth.txt), or true trajectory");
+  auto* estimate = app.add_option("estimate", question.estimate,
+                                  "estimated trajectory, or output folder of posefusion_run");
+  app.add_flag("--scale", question.with_scale, "align with a scale too");
+  app.add_option("--plot", question.plot, "picture of the differences to write, PNG");
+  app.add_option("--plan", question.plan,
+                 "picture to write, PNG: the map from above with both paths and wrong poses");
+  app.add_flag("--scene", question.scene,
+               "plan: over the whole simulated room, not over the run's map");
+  app.add_flag("--json", question.json, "print JSON");
+  return estimate;
+}
+
+CLI::App* addRunCommand(CLI::App& app, RunQuestion& run) {
+  auto* command = app.add_subcommand("run", "the map of a run against its input");
+  command->add_option("run", run.run, "output folder of posefusion_run")->required();
+  command->add_option("input", run.input, "TUM folder or bag it was made from")->required();
+  command->add_option("--truth", run.truth, "true trajectory, TUM format");
+  command->add_option("--camera", run.camera, "camera file, instead of the input's own");
+  command->add_option("--masks", run.masks, "true masks of people; default: INPUT/mask");
+  command->add_option("--first-frame", run.first_frame, "depth: first frame of the input")
+      ->capture_default_str();
+  command->add_option("--last-frame", run.last_frame, "depth: frame to stop before")
+      ->capture_default_str();
+  command->add_flag("--json", run.json, "print JSON");
+  return command;
+}
+
+CLI::App* addMasksCommand(CLI::App& app, PairQuestion& question) {
+  auto* command = app.add_subcommand("masks", "masks of people against true ones");
+  command->add_option("truth", question.truth, "sequence with mask/ (without: nobody is in it)")
+      ->required();
+  command->add_option("masks", question.checked, "output folder of posefusion_run --save-masks")
+      ->required();
+  command->add_flag("--json", question.json, "print JSON");
+  return command;
+}
+
+CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
+  auto* command = app.add_subcommand(
+      "covariance", "how often the reported covariance covers the true error of a frame's motion");
+  command->add_option("truth", question.truth, "sequence, or true trajectory")->required();
+  command->add_option("status", question.checked, "table of posefusion_run --save-status")
+      ->required();
+  command->add_flag("--json", question.json, "print JSON");
+  return command;
+}
+
 int evaluate(int argc, char** argv) {
   CLI::App app{"Errors of an estimated trajectory by the definitions of the TUM benchmark."};
   app.require_subcommand(0, 1);
   TrajectoryQuestion trajectory;
-  app.add_option("truth", trajectory.truth, "true trajectory, TUM format");
-  auto* estimate = app.add_option("estimate", trajectory.estimate, "estimated trajectory");
-  app.add_flag("--scale", trajectory.with_scale, "align with a scale too");
-  app.add_option("--plot", trajectory.plot, "picture to write, PNG");
-  app.add_flag("--json", trajectory.json, "print JSON");
-
   RunQuestion run;
-  auto* run_command = app.add_subcommand("run", "the map of a run against its input");
-  run_command->add_option("run", run.run, "output folder of posefusion_run")->required();
-  run_command->add_option("input", run.input, "TUM folder or bag it was made from")->required();
-  run_command->add_option("--truth", run.truth, "true trajectory, TUM format");
-  run_command->add_option("--camera", run.camera, "camera file, instead of the input's own");
-  run_command->add_option("--masks", run.masks, "true masks of people; default: INPUT/mask");
-  run_command->add_option("--first-frame", run.first_frame, "depth: first frame of the input")
-      ->capture_default_str();
-  run_command->add_option("--last-frame", run.last_frame, "depth: frame to stop before")
-      ->capture_default_str();
-  run_command->add_flag("--json", run.json, "print JSON");
-
-  std::string true_masks, masks;
-  bool masks_json = false;
-  auto* masks_command = app.add_subcommand("masks", "masks of people against true ones");
-  masks_command->add_option("truth", true_masks, "sequence with mask/ (without: nobody is in it)")
-      ->required();
-  masks_command->add_option("masks", masks, "output folder of posefusion_run --save-masks")
-      ->required();
-  masks_command->add_flag("--json", masks_json, "print JSON");
-
+  PairQuestion masks, covariance;
+  const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
+  const CLI::App* run_command = addRunCommand(app, run);
+  const CLI::App* masks_command = addMasksCommand(app, masks);
+  const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
   try {
     app.parse(argc, argv);
-    if (!*run_command && !*masks_command && !*estimate) {
+    if (app.get_subcommands().empty() && !*estimate) {
       throw CLI::RequiredError("true and estimated trajectory");
     }
   } catch (const CLI::ParseError& error) {
@@ -52,7 +86,9 @@ int evaluate(int argc, char** argv) {
   if (*run_command) {
     evaluateRun(run);
   } else if (*masks_command) {
-    evaluateMasks(true_masks, masks, masks_json);
+    evaluateMasks(masks.truth, masks.checked, masks.json);
+  } else if (*covariance_command) {
+    evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
   } else {
     evaluateTrajectory(trajectory);
   }

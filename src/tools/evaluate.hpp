@@ -5,10 +5,13 @@
 
 namespace pf {
 
-/// posefusion_evaluate GT EST
+/// posefusion_evaluate TRUTH ESTIMATE
 struct TrajectoryQuestion {
-  std::string truth, estimate;
-  std::string plot;  ///< picture to write, empty: none
+  std::string truth;     ///< sequence (TUM folder) or trajectory
+  std::string estimate;  ///< trajectory, or output folder of posefusion_run
+  std::string plot;      ///< picture to write, empty: none
+  std::string plan;      ///< picture to write, empty: none
+  bool scene = false;    ///< plan: the simulated room, not the run's map
   bool with_scale = false;
   bool json = false;
 };
@@ -28,5 +31,7 @@ void evaluateTrajectory(const TrajectoryQuestion& question);
 void evaluateRun(const RunQuestion& question);
 /// posefusion_evaluate masks TRUTH_DIR MASK_DIR
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
+/// posefusion_evaluate covariance TRUTH STATUS_FILE
+void evaluateCovariance(const std::string& truth, const std::string& status, bool json);
 
 }  // namespace pf

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluate.hpp"
-#include "posefusion/evaluation/masks.hpp"
+#include "posefusion/run/mask_folders.hpp"
 
 namespace pf {
 namespace {

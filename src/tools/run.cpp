@@ -70,19 +70,15 @@ void sayLeftOut(const InputReport& report, Progress& progress) {
 /// written.
 std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipeline& pipeline,
                            RunReport& report) {
-  std::optional<MaskWriter> masks;
-  if (options.save_masks) masks.emplace(options.output);
+  RunObservers observers(options, pipeline.mapper().map());
   const std::size_t limit = options.max_frames > 0 ? options.max_frames : SIZE_MAX;
-  std::optional<LiveDepthCheck> depth;
-  if (options.check_depth) depth.emplace(pipeline.mapper().map());
   Progress progress(std::min(source.frameCount(), limit));
   std::exception_ptr failure;
   bool full = false;
   try {
     runPipeline(source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
       report.add(frame);
-      if (masks) masks->add(frame);
-      if (depth) depth->add(frame);
+      observers.add(frame);
       if (!defect.empty()) {
         progress.say("frame left out: " + defect);
       } else if (frame.status.outcome == FrameOutcome::bad_input) {
@@ -98,8 +94,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   } catch (...) {
     failure = std::current_exception();
   }
-  if (masks) masks->finish();
-  if (depth) report.setDepthCheck(depth->check());
+  observers.finish(report);
   sayLeftOut(source.report(), progress);
   return failure;
 }

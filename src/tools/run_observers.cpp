@@ -5,6 +5,7 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
+#include "posefusion/run/run_statistics.hpp"
 
 namespace pf {
 namespace {
@@ -28,11 +29,42 @@ void MaskWriter::add(const ProcessedFrame& frame) {
 
 void MaskWriter::finish() const { savePeople(folder_ + "/people.json", people_); }
 
+void StatusWriter::add(const ProcessedFrame& frame) {
+  const FrameStatus& status = frame.status;
+  StatusRow row;
+  row.stamp_ns = status.stamp_ns;
+  row.has_pose = hasPose(status);
+  row.state = name(status.state);
+  row.outcome = name(status.outcome);
+  row.reason = reasonOf(status);
+  row.T_map_camera = status.T_map_camera;
+  if (row.has_pose) row.covariance = status.tracking.covariance;
+  rows_.push_back(std::move(row));
+}
+
 void LiveDepthCheck::add(const ProcessedFrame& frame) {
   if (index_++ < kFirstFrame || frame.status.outcome != FrameOutcome::fused) return;
   RgbdFrame still = frame.seen.frame;
   still.depth = frame.segmentation.static_depth;
   check_.add(still, frame.segmentation.mask, frame.status.T_map_camera);
+}
+
+RunObservers::RunObservers(const RunOptions& options, const SurfelMap& map) {
+  if (options.save_masks) masks_.emplace(options.output);
+  if (!options.status_file.empty()) status_.emplace(options.status_file);
+  if (options.check_depth) depth_.emplace(map);
+}
+
+void RunObservers::add(const ProcessedFrame& frame) {
+  if (masks_) masks_->add(frame);
+  if (status_) status_->add(frame);
+  if (depth_) depth_->add(frame);
+}
+
+void RunObservers::finish(RunReport& report) const {
+  if (masks_) masks_->finish();
+  if (status_) status_->finish();
+  if (depth_) report.setDepthCheck(depth_->check());
 }
 
 }  // namespace pf

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posefusion/evaluation/map_check.hpp"
+#include "posefusion/io/status_file.hpp"
+#include "posefusion/run/run_report.hpp"
 #include "posefusion/slam/pipeline.hpp"
+#include "run_options.hpp"
 
 namespace pf {
 
@@ -23,6 +28,19 @@ class MaskWriter {
   std::vector<People> people_;
 };
 
+/// Keeps what became of each frame, for --save-status.
+class StatusWriter {
+ public:
+  explicit StatusWriter(std::string path) : path_(std::move(path)) {}
+
+  void add(const ProcessedFrame& frame);
+  void finish() const { saveStatus(path_, rows_); }
+
+ private:
+  std::string path_;
+  std::vector<StatusRow> rows_;
+};
+
 /// Compares the depth of the fused frames, from the fiftieth on, with the map as it is just then.
 class LiveDepthCheck {
  public:
@@ -34,6 +52,22 @@ class LiveDepthCheck {
  private:
   DepthCheck check_;
   int index_ = 0;
+};
+
+/// Those of the above that the user asked for.
+class RunObservers {
+ public:
+  /// The map must outlive it.
+  RunObservers(const RunOptions& options, const SurfelMap& map);
+
+  void add(const ProcessedFrame& frame);
+  /// Writes the files and tells the report what was found.
+  void finish(RunReport& report) const;
+
+ private:
+  std::optional<MaskWriter> masks_;
+  std::optional<StatusWriter> status_;
+  std::optional<LiveDepthCheck> depth_;
 };
 
 }  // namespace pf

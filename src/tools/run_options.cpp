@@ -61,6 +61,8 @@ std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options) {
   app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
   addTopicOptions(app, reading);
   app.add_flag("--save-masks", options.save_masks, "write mask/ and people.json");
+  app.add_option("--save-status", options.status_file,
+                 "CSV to write: state, reason, pose and covariance of each frame");
   app.add_flag("--check-depth", options.check_depth,
                "compare each frame's depth with the map rendered from its pose (slower)");
   app.add_flag("--print-config", print_config, "print all settings and stop");

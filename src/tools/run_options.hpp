@@ -20,6 +20,7 @@ struct RunOptions {
   int threads = 0;             ///< 0: all cores
   bool save_masks = false;
   bool check_depth = false;
+  std::string status_file;  ///< table of what became of each frame; empty: none
   Config config;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,5 +54,9 @@ class FrameSource {
 /// what is missing.
 std::unique_ptr<FrameSource> openTumFolder(const std::string& folder,
                                            const std::string& camera_file = "");
+
+/// The stamps (ns) of the frames that openTumFolder() would give, without reading an image, in the
+/// order of the lists. Throws InputError naming what is missing.
+std::vector<std::int64_t> listTumFrames(const std::string& folder);
 
 }  // namespace pf

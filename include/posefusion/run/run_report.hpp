@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/core/trajectory.hpp"
@@ -17,6 +19,8 @@ namespace pf {
 /// Accuracy of a run against the truth.
 struct RunErrors {
   ErrorStatistics ate_m;
+  ErrorStatistics held_m;  ///< heldError(): all frames, those without a pose with the last one
+  std::size_t wrong = 0;   ///< wrongPoses()
   RelativeError per_second;
 };
 
@@ -35,14 +39,14 @@ class RunReport {
   void setDepthCheck(const DepthCheck& check) { depth_difference_m_ = check.medianM(); }
 
   const RunStatistics& statistics() const { return statistics_; }
-  /// Poses of the fused frames.
+  /// The frames that have a pose of their own.
   const Trajectory& trajectory() const { return trajectory_; }
   double framesPerSecond() const;
   /// Nothing without truth, or when fewer than three poses have a true one.
   std::optional<RunErrors> errors() const;
 
-  /// trajectory.txt (TUM format, camera poses of the fused frames), map.ply, summary.json, map.png
-  /// and people.png. Throws InputError naming the file.
+  /// trajectory.txt (TUM format, camera poses of the frames that have one), map.ply, summary.json,
+  /// map.png and people.png. Throws InputError naming the file.
   void write(const std::string& folder, const SurfelMap& map) const;
 
   /// A few lines for people.
@@ -53,6 +57,7 @@ class RunReport {
 
   Config config_;
   RunStatistics statistics_;
+  std::vector<std::int64_t> frames_ns_;  // of all frames that could be read
   Trajectory trajectory_;
   Trajectory truth_;
   PeopleStrip strip_;

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs of the chain and the sequences that they are made from, each done once."""
+import hashlib
+import json
+import pathlib
+import shutil
+import sys
+
+from bench_report import Report, call
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAMS = ROOT / "devel" / "lib" / "posefusion"
+
+
+def note(text):
+    print(f"  {text} ...", file=sys.stderr)
+
+
+def fingerprint(scenario, arguments):
+    """Of all that a simulated sequence is made from: scenario, simulator and arguments. Not of the
+    program's age: a build that changes no simulator costs no eight minutes of rendering."""
+    digest = hashlib.sha256("\n".join(arguments).encode())
+    sources = sorted(p for p in (ROOT / "src" / "simulator").rglob("*") if p.is_file())
+    scenarios = sorted((ROOT / "config" / "scenarios").glob("*.yaml"))
+    by_name = {path.stem: path.read_text() for path in scenarios}
+    for path in sources:
+        digest.update(path.name.encode() + path.read_bytes())
+    while scenario in by_name:  # a scenario may start from another one
+        text = by_name.pop(scenario)
+        digest.update(text.encode())
+        bases = [line.split(":", 1)[1].strip() for line in text.splitlines() if line.startswith("base:")]
+        scenario = bases[0] if bases else ""
+    return digest.hexdigest()
+
+
+class Runs(Report):
+    def __init__(self, options):
+        super().__init__()
+        self.options = options
+        self.runs = {}
+        self.output = options.output
+        self.output.mkdir(parents=True, exist_ok=True)
+
+    def run(self, name, source, *arguments):
+        """(output folder, summary) of a run of the offline chain."""
+        if name not in self.runs:
+            note(f"running {name}")
+            folder = self.output / name
+            shutil.rmtree(folder, ignore_errors=True)
+            call(PROGRAMS / "posefusion_run", source, "--output", folder, *arguments)
+            self.runs[name] = folder, json.loads((folder / "summary.json").read_text())
+        return self.runs[name]
+
+    def network_arguments(self):
+        return "--detector", "network", "--model", self.options.model
+
+    def network(self, name, sequence, *arguments):
+        return self.run(name, self.options.data / sequence, *self.network_arguments(), "--save-masks",
+                        *arguments)
+
+    def evaluate(self, *arguments):
+        return json.loads(call(PROGRAMS / "posefusion_evaluate", *arguments, "--json"))
+
+    def sequence(self, name, *arguments):
+        """A folder of posefusion_make_sequence."""
+        folder = self.output / name
+        program = PROGRAMS / "posefusion_make_sequence"
+        marker = folder / "complete"
+        if not marker.exists() or marker.stat().st_mtime < program.stat().st_mtime:
+            shutil.rmtree(folder, ignore_errors=True)
+            call(program, folder, *arguments)
+            marker.touch()
+        return folder
+
+    def simulated(self, scenario, seed, duration=None):
+        """A simulated sequence: that of --sequences where it is there, or made, and kept until
+        what it is made from changes. `duration` in seconds; None: the scenario's own."""
+        given = self.options.sequences and self.options.sequences / f"{scenario}_{seed}"
+        if given and given.is_dir():
+            return given
+        duration = self.options.duration or duration
+        arguments = [scenario, "--seed", str(seed)]
+        if duration:
+            arguments += ["--duration", str(duration)]
+        folder = self.output / "_".join([scenario, str(seed)] + ([f"{duration:g}s"] if duration else []))
+        marker, wanted = folder / "made_from", fingerprint(scenario, arguments)
+        if marker.exists() and marker.read_text() == wanted:
+            return folder
+        note(f"simulating {folder.name}")
+        shutil.rmtree(folder, ignore_errors=True)
+        call(PROGRAMS / "posefusion_simulate", *arguments, "--output", folder)
+        marker.write_text(wanted)
+        return folder
+
+    def walk_run(self, scenario, seed, people, duration=None):
+        """(sequence, output folder, summary) of a run over a simulated sequence; `people` are
+        "recorded" or found by the "network"."""
+        sequence = self.simulated(scenario, seed, duration)
+        detector = self.network_arguments() if people == "network" else ("--detector", people)
+        name = f"{sequence.name}_{people}_run"
+        status = self.output / name / "status.csv"
+        return sequence, *self.run(name, sequence, *detector, "--save-status", status)
+
+    def wrong_row(self, name, summary):
+        self.row(f"{name}, wrong poses", summary["wrong_poses"], "", 0, digits=0)

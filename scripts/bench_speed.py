@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Times, the yardstick that they are held against, the blur gate, and repeatability."""
+import filecmp
+import json
+import os
+import re
+import shutil
+import statistics
+
+from bench_report import call
+from bench_runs import PROGRAMS, ROOT, Runs, note
+
+
+class Speed(Runs):
+    def speed(self):
+        data = self.options.data / "kitchen_people"
+        found = [self.run(f"speed_{i}", data, *self.network_arguments())[1]
+                 for i in range(self.options.repeats)]
+        stages = {name for summary in found for name in summary["stages"]}
+        for stage in sorted(stages):
+            times = [s["stages"][stage]["median_ms"] for s in found if stage in s["stages"]]
+            bar = 25 if stage == "tracking_and_fusion" else None
+            self.row(f"kitchen_people, {stage}, median", statistics.median(times), "ms", bar, digits=1)
+        self.row("kitchen_people, whole chain", statistics.median(s["frames_per_second"] for s in found),
+                 "frames/s", 20, most=False, digits=1)
+        self.row("kitchen_people, peak memory", max(s["peak_memory_mb"] for s in found), "MB", digits=0)
+
+    def yardstick(self):
+        """Machines differ by a factor of two from day to day: a speed counts as a ratio to
+        something that everybody has, on the same frames, in turns."""
+        data = self.options.data / "kitchen_people"
+        theirs, ours, ratios, gains = [], [], [], []
+        for i in range(self.options.repeats):
+            note("running RgbdICPOdometry")
+            theirs.append(json.loads(call(PROGRAMS / "posefusion_rgbd_yardstick", data)))
+            ours.append(self.run(f"yardstick_{i}", data, *self.network_arguments())[1])
+            median_ms = ours[-1]["stages"]["tracking_and_fusion"]["median_ms"]
+            ratios.append(median_ms / theirs[-1]["median_ms"])
+            if self.options.baseline:
+                gains.append(ours[-1]["frames_per_second"] / self.baseline_speed(data))
+        self.row("kitchen_people, RgbdICPOdometry, median",
+                 statistics.median(t["median_ms"] for t in theirs), "ms", digits=1)
+        self.row("kitchen_people, RgbdICPOdometry, ATE RMSE", theirs[0]["ate_rmse_m"], "m")
+        self.row("kitchen_people, tracking and fusion against RgbdICPOdometry",
+                 statistics.median(ratios), "x", 0.35, digits=3)
+        if gains:
+            self.row("kitchen_people, whole chain against the older build", statistics.median(gains),
+                     "x", 1.25, most=False, digits=2)
+
+    def baseline_speed(self, data):
+        """Frames per second of the posefusion_run of an older build (--baseline)."""
+        note("running the older build")
+        folder = self.output / "baseline"
+        shutil.rmtree(folder, ignore_errors=True)
+        call(self.options.baseline / "posefusion_run", data, "--output", folder,
+             *self.network_arguments())
+        return json.loads((folder / "summary.json").read_text())["frames_per_second"]
+
+    def gate(self):
+        found = json.loads(call(PROGRAMS / "posefusion_gate_check", self.options.data / "kitchen_static"))
+        for key, what in (("contrast_halved_s", "contrast halved"), ("dull_wall_s", "a dull wall")):
+            self.row(f"kitchen_static, blur gate, {what}: back to normal after", found[key], "s", 1,
+                     digits=2)
+
+    def simulator(self):
+        for what, blur, bar in (("without", "false", 10), ("with", "true", 4)):
+            found = []
+            for _ in range(self.options.repeats):
+                note(f"simulating walking_static {what} motion blur")
+                folder = self.output / "simulated"
+                shutil.rmtree(folder, ignore_errors=True)
+                said = call("bash", "-c", '"$@" 2>&1', "bash", PROGRAMS / "posefusion_simulate",
+                            "walking_static", "--duration", "3", "--output", folder,
+                            "--set", f"color.motion_blur={blur}")
+                found.append(float(re.findall(r"([0-9.]+) frames per second", said)[-1]))
+            self.row(f"simulator, room with two people, {what} motion blur",
+                     statistics.median(found), "frames/s", bar, most=False, digits=1)
+        folder = self.output / "empty_room_input"
+        shutil.rmtree(folder, ignore_errors=True)
+        call(PROGRAMS / "posefusion_simulate", "empty_room", "--duration", "5", "--output", folder)
+        _, summary = self.run("empty_room", folder, "--detector", "none")
+        self.row("empty_room (simulated), 150 frames, ATE RMSE", summary["ate_rmse_m"], "m")
+        _, real = self.run("static_150", self.options.data / "kitchen_static", "--detector", "none",
+                           "--max-frames", "150")
+        self.row("empty_room against 150 frames of kitchen_static, ATE",
+                 summary["ate_rmse_m"] / real["ate_rmse_m"], "x", 10, digits=2)
+
+    def same(self, what, first, second, *names):
+        equal = all(filecmp.cmp(first / name, second / name, shallow=False) for name in names)
+        self.fact(what, equal, "identical" if equal else "different")
+
+    def repeatability(self):
+        one, _ = self.network("one_thread", "kitchen_people", "--threads", "1")
+        two, _ = self.network("two_threads", "kitchen_people", "--threads", "2")
+        self.same("kitchen_people, 1 and 2 threads, trajectory and map", one, two,
+                  "trajectory.txt", "map.ply")
+
+    def nodelets(self):
+        bag = self.output / "kitchen_people.bag"
+        call(PROGRAMS / "posefusion_to_bag", self.options.data / "kitchen_people", bag)
+        offline, _ = self.run("bag_offline", bag, *self.network_arguments())
+        out = self.output / "bag_nodelets"
+        shutil.rmtree(out, ignore_errors=True)
+        note("replaying the bag through the nodelets")
+        launch = (f"source '{ROOT}/devel/setup.bash' && roslaunch --port 11399 posefusion replay.launch "
+                  f"bag:='{bag}' output:='{out}' detector:=network model:='{self.options.model}'")
+        call("bash", "-c", launch, timeout=1200,
+             env={**os.environ, "ROS_MASTER_URI": "http://localhost:11399", "ROS_HOSTNAME": "localhost"})
+        bag.unlink()
+        self.same("kitchen_people as a bag, nodelets and offline runner, trajectory", offline, out,
+                  "trajectory.txt")

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Simulated walks and falls: who is lost, where, and does the chain say so?"""
+import csv
+
+from bench_runs import Runs
+
+WALKING_BARS_M = {"walking_static": 0.005, "walking_xyz": 0.010, "walking_halfsphere": 0.016,
+                  "walking_rpy": 0.020}
+WALKING_SECONDS = 30
+
+
+def states(folder):
+    """The rows of the table that a run keeps of its frames."""
+    with open(folder / "status.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Walks(Runs):
+    def check_track(self, name, sequence, folder):
+        """Coverage, wrong and false poses of a run, by posefusion_evaluate; draws the plan."""
+        plan = folder / "plan.png"
+        track = self.evaluate(sequence, folder, "--plan", plan)
+        self.row(f"{name}, wrong poses", track["wrong_poses"], "", 0, digits=0)
+        return track
+
+    def detectors(self):
+        """People as recorded and, where the weights are, as the network finds them."""
+        return ("recorded", "network") if self.options.model.exists() else ("recorded",)
+
+    def walk(self):
+        for people in self.detectors():
+            for seed in self.options.seeds:
+                name = f"loop_room {seed}, {people}"
+                sequence, folder, summary = self.walk_run("loop_room", seed, people)
+                track = self.check_track(name, sequence, folder)
+                self.row(f"{name}, frames with a pose, of those not blurred",
+                         100 * track["coverage"]["share_of_sharp"], "%", 99, most=False, digits=2)
+                self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.20, digits=3)
+                self.row(f"{name}, ATE with the last pose held", track["ate_held_m"]["rmse"], "m",
+                         digits=3)
+                self.row(f"{name}, frames doubtful",
+                         summary["frames"]["by_state"].get("doubtful", 0), "", digits=0)
+
+    def fall(self):
+        for people in self.detectors():
+            for seed in self.options.seeds:
+                name = f"fall_short {seed}, {people}"
+                sequence, folder, _ = self.walk_run("fall_short", seed, people)
+                track = self.check_track(name, sequence, folder)
+                self.row(f"{name}, false poses (0.10 m off, aligned before the fall)",
+                         track["false_poses"], "", digits=0)
+                rows = states(folder)
+                lost = next((i for i, row in enumerate(rows) if row["state"] == "lost"), None)
+                after = rows[lost:] if lost is not None else []
+                posed = sum(row["has_pose"] == "1" for row in after)
+                text = ("never lost" if lost is None else
+                        "yes" if posed == 0 else f"{posed} poses after it")
+                # Whoever says that he is back has to be where he says.
+                self.fact(f"{name}, lost stays lost", posed == 0 or track["false_poses"] == 0, text)
+
+    def walking(self):
+        for scenario, bar in WALKING_BARS_M.items():
+            for seed in self.options.seeds:
+                name = f"{scenario} {seed}, network"
+                sequence, folder, summary = self.walk_run(scenario, seed, "network", WALKING_SECONDS)
+                self.check_track(name, sequence, folder)
+                self.row(f"{name}, ATE RMSE", summary["ate_rmse_m"], "m", bar)
+                self.row(f"{name}, frames lost", summary["frames"]["lost"], "", 0, digits=0)
+
+    def covariance(self):
+        runs = [(scenario, seed, "network", WALKING_SECONDS) for scenario in WALKING_BARS_M
+                for seed in self.options.seeds]
+        runs += [("loop_room", seed, "recorded", None) for seed in self.options.seeds]
+        for scenario, seed, people, seconds in runs:
+            sequence, folder, _ = self.walk_run(scenario, seed, people, seconds)
+            share = self.evaluate("covariance", sequence, folder / "status.csv")
+            name = f"{scenario} {seed}, motion's true error within 3 sigma"
+            self.row(name, 100 * share["within_3_sigma"], "%", 90, most=False, digits=1)

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/evaluation/covariance_check.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "posefusion/evaluation/metrics.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::int64_t kLongestMotionNs = 500'000'000;
+/// 99.73 % of six independent normal variables lie within (chi-squared, 6 degrees of freedom).
+constexpr double kEllipsoid = 20.062;
+
+/// Error of the motion between two poses, in the camera frame of the later one.
+Vector6d motionError(const PosePair& from, const PosePair& to) {
+  const Eigen::Isometry3d truth = from.truth.T_world_camera.inverse() * to.truth.T_world_camera;
+  const Eigen::Isometry3d estimate =
+      from.estimate.T_world_camera.inverse() * to.estimate.T_world_camera;
+  return logSe3(truth.inverse() * estimate);
+}
+
+double sigmasOf(double error, double variance) {
+  if (error == 0.0) return 0.0;
+  return variance > 0.0 ? std::abs(error) / std::sqrt(variance)
+                        : std::numeric_limits<double>::infinity();
+}
+
+bool isInEllipsoid(const Vector6d& error, const Matrix6d& covariance) {
+  const Eigen::LDLT<Matrix6d> factors(covariance);
+  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0.0)) {
+    return error.isZero(0.0);
+  }
+  return error.dot(factors.solve(error)) <= kEllipsoid;
+}
+
+}  // namespace
+
+CovarianceShare checkCovariances(const Trajectory& truth, const std::vector<UncertainPose>& poses) {
+  Trajectory estimate;
+  for (const UncertainPose& pose : poses) estimate.push_back({pose.stamp_ns, pose.T_map_camera});
+  const std::vector<PosePair> pairs = matchPoses(truth, estimate);
+  CovarianceShare share;
+  std::vector<double> largest;
+  for (std::size_t i = 1, at = 0; i < pairs.size(); ++i) {
+    const std::int64_t stamp_ns = pairs[i].estimate.stamp_ns;
+    while (poses[at].stamp_ns < stamp_ns) ++at;
+    if (stamp_ns - pairs[i - 1].estimate.stamp_ns > kLongestMotionNs) continue;
+    const Vector6d error = motionError(pairs[i - 1], pairs[i]);
+    const Matrix6d& covariance = poses[at].covariance;
+    largest.push_back(0.0);
+    for (int axis = 0; axis < 6; ++axis) {
+      const double sigmas = sigmasOf(error[axis], covariance(axis, axis));
+      largest.back() = std::max(largest.back(), sigmas);
+      if (sigmas <= 3.0) share.axes[static_cast<std::size_t>(axis)] += 1.0;
+    }
+    if (largest.back() <= 3.0) share.within += 1.0;
+    if (isInEllipsoid(error, covariance)) share.within_ellipsoid += 1.0;
+  }
+  share.motions = largest.size();
+  if (largest.empty()) return share;
+  const auto n = static_cast<double>(largest.size());
+  for (double& axis : share.axes) axis /= n;
+  share.within /= n;
+  share.within_ellipsoid /= n;
+  share.median_sigmas = statisticsOf(largest).median;
+  return share;
+}
+
+}  // namespace pf

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/run/mask_folders.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/frame.hpp"
+#include "posefusion/io/frame_source.hpp"
+#include "posefusion/io/people_json.hpp"
+
+namespace pf {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// <stamp>.png files by their stamps in microseconds.
+using Masks = std::map<std::int64_t, std::string>;
+
+Masks listMasks(const fs::path& folder) {
+  Masks masks;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".png") continue;
+    try {
+      const double seconds = std::stod(entry.path().stem().string());
+      masks[std::llround(seconds * 1e6)] = entry.path().string();
+    } catch (const std::exception&) {
+      continue;  // another picture
+    }
+  }
+  return masks;
+}
+
+fs::path maskFolderOf(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw InputError(folder + ": no such folder of masks");
+  const fs::path inner = fs::path(folder) / "mask";
+  return fs::is_directory(inner) ? inner : fs::path(folder);
+}
+
+cv::Mat loadMask(const std::string& path) {
+  cv::Mat mask = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  if (mask.empty()) throw InputError(path + ": not a readable mask");
+  return mask;
+}
+
+/// Goes through the sequence for its depth and checks the people that were found.
+void checkFound(const std::string& sequence, const std::string& people_file, const Masks& truths,
+                const Masks& masks, MaskCheck& check) {
+  const RecordedPeople people = loadPeople(people_file);
+  const auto source = openTumFolder(sequence);
+  while (auto next = source->next()) {
+    const auto seen = people.find(next->frame.stamp_ns);
+    const std::int64_t stamp = next->frame.stamp_ns / 1000;
+    const auto truth_file = truths.find(stamp), mask_file = masks.find(stamp);
+    if (!next->defect.empty() || seen == people.end() || truth_file == truths.end() ||
+        mask_file == masks.end()) {
+      continue;
+    }
+    cv::Mat depth_m;
+    depthInMetres(next->frame, 0.1, 20.0, depth_m);
+    const cv::Mat truth = loadMask(truth_file->second);
+    check.addFound(truth, loadMask(mask_file->second), foundParts(truth, depth_m, seen->second));
+  }
+}
+
+}  // namespace
+
+MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_folder) {
+  const fs::path truth_masks = maskFolderOf(truth_folder);
+  const auto truths = listMasks(truth_masks);
+  const auto masks = listMasks(maskFolderOf(mask_folder));
+  const bool is_sequence = fs::exists(fs::path(truth_folder) / "rgb.txt") ||
+                           fs::exists(fs::path(truth_folder) / "associations.txt");
+  if (truths.empty() && !is_sequence) {
+    throw InputError(truth_folder + ": neither <stamp>.png masks nor a sequence");
+  }
+  if (masks.empty())
+    throw InputError(mask_folder + ": no <stamp>.png masks (run with --save-masks)");
+  MaskCheck check;
+  for (const auto& [stamp, path] : masks) {
+    const cv::Mat mask = loadMask(path);
+    const auto truth = truths.find(stamp);
+    if (truth == truths.end() && !truths.empty()) continue;
+    check.add(
+        truths.empty() ? cv::Mat(mask.size(), CV_8UC1, cv::Scalar(0)) : loadMask(truth->second),
+        mask);
+  }
+  if (check.frames() == 0) {
+    throw InputError(mask_folder + ": no mask has a stamp of " + truth_masks.string());
+  }
+  for (const fs::path& people :
+       {fs::path(mask_folder) / "people.json", fs::path(mask_folder) / ".." / "people.json"}) {
+    if (!fs::exists(people) || !is_sequence || truths.empty()) continue;
+    checkFound(truth_folder, people.string(), truths, masks, check);
+    break;
+  }
+  return check;
+}
+
+}  // namespace pf

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/run/sequence_facts.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/events_file.hpp"
+#include "posefusion/io/frame_source.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+
+namespace pf {
+
+namespace fs = std::filesystem;
+
+SequenceTruth loadSequenceTruth(const std::string& path) {
+  SequenceTruth truth;
+  if (!fs::is_directory(path)) {
+    truth.trajectory = loadTrajectory(path);
+    return truth;
+  }
+  const fs::path folder(path);
+  if (!fs::exists(folder / "groundtruth.txt")) {
+    throw InputError(path + ": has no groundtruth.txt, expected a sequence with true poses");
+  }
+  truth.trajectory = loadTrajectory(folder / "groundtruth.txt");
+  truth.facts.frames_ns = listTumFrames(path);
+  std::sort(truth.facts.frames_ns.begin(), truth.facts.frames_ns.end());
+  if (!fs::exists(folder / "events.json")) return truth;
+  const RecordedEvents events = loadEvents(folder / "events.json");
+  truth.facts.blurred_ns = events.blurred_ns;
+  if (!events.fall_starts_ns.empty()) truth.facts.first_fall_ns = events.fall_starts_ns.front();
+  return truth;
+}
+
+}  // namespace pf
