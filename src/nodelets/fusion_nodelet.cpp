@@ -114,7 +114,7 @@ class FusionNodelet : public ChainNodelet {
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
     const FrameStatus status =
-        mapper_->process(frame, cv::countNonZero(people) > 0 ? people : cv::Mat());
+        mapper_->process({frame, cv::countNonZero(people) > 0 ? people : cv::Mat(), {}});
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     std::string reason = reasonOf(status);
     if (status.outcome == FrameOutcome::fused) {
