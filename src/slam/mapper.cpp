@@ -155,7 +155,7 @@ FrameStatus Mapper::process(const RgbdFrame& frame, const cv::Mat& mask) {
   status.fusion_ms = watch.lapMs();
   status.state = s.tracking_state;
   status.T_map_camera = s.T_map_camera;
-  status.surfels = s.map.surfels().size();
+  status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;
   return status;
 }
@@ -166,7 +166,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.state = state_->tracking_state;
   status.outcome = outcome;
   status.T_map_camera = state_->T_map_camera;
-  status.surfels = state_->map.surfels().size();
+  status.surfels = state_->map.size();
   status.map_full = state_->map.refused() > 0;
   return status;
 }
@@ -177,7 +177,7 @@ ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T
   ModelView view;
   RenderOptions options;
   options.with_color = true;
-  options.only_active = false;
+  options.age = SurfelAge::all;
   SurfelRenderer().render(state_->map, camera, T_map_camera, options, view);
   return view;
 }
