@@ -43,9 +43,16 @@ RgbdFrame frameOf(double z) {
 const cv::Rect kAll(0, 0, 80, 60);
 const cv::Rect kBody(20, 10, 20, 40);
 
-TEST(DepthCheck, IsTheOffsetOfAWall) {
+SurfelMap wallMap(double z) {
+  SurfelArrays surfels;
+  addWall(surfels, kAll, z);
   SurfelMap map{MapConfig{}};
-  addWall(map.surfels(), kAll, 2.0);
+  map.add(surfels);
+  return map;
+}
+
+TEST(DepthCheck, IsTheOffsetOfAWall) {
+  const SurfelMap map = wallMap(2.0);
   DepthCheck check(map);
   check.add(frameOf(2.004), cv::Mat(), Eigen::Isometry3d::Identity());
   EXPECT_NEAR(check.medianM(), 0.004, 1.1e-4);
@@ -58,8 +65,7 @@ TEST(DepthCheck, IsTheOffsetOfAWall) {
 }
 
 TEST(DepthCheck, UsesThePoseAndLeavesMaskedPixelsOut) {
-  SurfelMap map{MapConfig{}};
-  addWall(map.surfels(), kAll, 2.0);
+  const SurfelMap map = wallMap(2.0);
   Eigen::Isometry3d back = Eigen::Isometry3d::Identity();
   back.translation().z() = -0.5;
   RgbdFrame frame = frameOf(2.5);

@@ -10,41 +10,47 @@
 namespace pf {
 namespace {
 
-SurfelMap mapOf(std::size_t count) {
-  SurfelMap map{MapConfig{}};
+/// Stable surfels, no two alike.
+SurfelArrays surfelsOf(std::size_t count) {
+  SurfelArrays surfels;
   float value = 0.0F;
-  map.surfels().forEachArray([&](auto& array) {
+  surfels.forEachArray([&](auto& array) {
     array.resize(count);
     for (auto& x : array) x = static_cast<std::decay_t<decltype(x)>>(value += 0.37F);
   });
+  surfels.confidence.assign(count, 100.0F);
+  return surfels;
+}
+
+/// All in one block, so that their order stays.
+SurfelMap mapOf(const SurfelArrays& surfels) {
+  SurfelMap map(MapConfig{}, 1000.0F);
+  map.add(surfels);
   return map;
 }
 
 TEST(MapFile, ReadsBackTheStableSurfels) {
   TemporaryFolder folder;
-  SurfelMap map = mapOf(10);
-  map.surfels().confidence.assign(10, 100.0F);
-  map.surfels().confidence[3] = 0.5F;
-  map.surfels().r[4] = 300.0F;
-  map.surfels().g[4] = -5.0F;
-  EXPECT_EQ(saveMap(folder / "m.ply", map), 9U);
+  SurfelArrays surfels = surfelsOf(10);
+  surfels.confidence[3] = 0.5F;
+  surfels.r[4] = 300.0F;
+  surfels.g[4] = -5.0F;
+  EXPECT_EQ(saveMap(folder / "m.ply", mapOf(surfels)), 9U);
   const SurfelArrays read = loadMap(folder / "m.ply");
   ASSERT_EQ(read.size(), 9U);
-  EXPECT_EQ(read.x[2], map.surfels().x[2]);
-  EXPECT_EQ(read.x[3], map.surfels().x[4]) << "the unstable one is left out";
-  EXPECT_EQ(read.nz[8], map.surfels().nz[9]);
-  EXPECT_EQ(read.radius[8], map.surfels().radius[9]);
+  EXPECT_EQ(read.x[2], surfels.x[2]);
+  EXPECT_EQ(read.x[3], surfels.x[4]) << "the unstable one is left out";
+  EXPECT_EQ(read.nz[8], surfels.nz[9]);
+  EXPECT_EQ(read.radius[8], surfels.radius[9]);
   EXPECT_EQ(read.confidence[8], 100.0F);
-  EXPECT_EQ(read.b[0], std::round(map.surfels().b[0]));
+  EXPECT_EQ(read.b[0], std::round(surfels.b[0]));
   EXPECT_EQ(read.r[3], 255.0F);
   EXPECT_EQ(read.g[3], 0.0F);
 }
 
 TEST(MapFile, IsPlyAsOtherToolsReadIt) {
   TemporaryFolder folder;
-  SurfelMap map = mapOf(2);
-  map.surfels().confidence.assign(2, 100.0F);
-  saveMap(folder / "m.ply", map);
+  saveMap(folder / "m.ply", mapOf(surfelsOf(2)));
   const std::string text = readFile(folder / "m.ply");
   const auto end = text.find("end_header\n");
   ASSERT_NE(end, std::string::npos);
@@ -54,9 +60,7 @@ TEST(MapFile, IsPlyAsOtherToolsReadIt) {
 
 TEST(MapFile, DamagedFilesAreErrors) {
   TemporaryFolder folder;
-  SurfelMap map = mapOf(5);
-  map.surfels().confidence.assign(5, 100.0F);
-  saveMap(folder / "m.ply", map);
+  saveMap(folder / "m.ply", mapOf(surfelsOf(5)));
   const std::string text = readFile(folder / "m.ply");
   const auto error = [&](const std::string& content) {
     const auto path = folder.write("x.ply", content);

@@ -87,7 +87,7 @@ TEST_F(MapperTest, ABareWallIsNotTrusted) {
 TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
   Mapper mapper(config());
   for (int i = 0; i < 20; ++i) mapper.process(room_.frame(i).frame, cv::Mat());
-  const std::size_t surfels = mapper.map().surfels().size();
+  const std::size_t surfels = mapper.map().size();
   FrameStatus status;
   for (int i = 20; i < 30; ++i) {  // something covers the camera
     const SyntheticFrame truth = room_.frame(i);
@@ -95,7 +95,7 @@ TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
     EXPECT_EQ(status.outcome, FrameOutcome::no_depth);
   }
   EXPECT_EQ(status.state, TrackingState::lost);
-  EXPECT_EQ(mapper.map().surfels().size(), surfels) << "nothing was fused meanwhile";
+  EXPECT_EQ(mapper.map().size(), surfels) << "nothing was fused meanwhile";
   const SyntheticFrame truth = room_.frame(22);  // back near the last good pose
   RgbdFrame frame = truth.frame;
   frame.stamp_ns = room_.stamp(40);
@@ -107,7 +107,7 @@ TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
 TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {
   Mapper mapper(config());
   for (int i = 0; i < 10; ++i) mapper.process(room_.frame(i).frame, cv::Mat());
-  const std::size_t surfels = mapper.map().surfels().size();
+  const std::size_t surfels = mapper.map().size();
   for (int i = 10; i < 20; ++i) {  // as in a fall: dark, and half a metre away
     RgbdFrame frame = room_.frame(i).frame;
     frame.depth = cv::Mat(240, 320, CV_16UC1, cv::Scalar(0));
@@ -115,7 +115,7 @@ TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {
     frame.color = frame.color * 0.2;
     EXPECT_NE(mapper.process(frame, cv::Mat()).outcome, FrameOutcome::fused);
   }
-  EXPECT_EQ(mapper.map().surfels().size(), surfels);
+  EXPECT_EQ(mapper.map().size(), surfels);
 }
 
 TEST_F(MapperTest, NothingToSeeAtFirstIsNoMap) {
@@ -159,7 +159,7 @@ TEST_F(MapperTest, ResetStartsAnewAtThePoseGiven) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() << 1, 2, 3;
   mapper.reset(T);
-  EXPECT_EQ(mapper.map().surfels().size(), 0U);
+  EXPECT_EQ(mapper.map().size(), 0U);
   const FrameStatus status = mapper.process(room_.frame(0).frame, cv::Mat());
   EXPECT_EQ(status.outcome, FrameOutcome::fused);
   EXPECT_TRUE(status.T_map_camera.isApprox(T));
@@ -176,7 +176,7 @@ TEST_F(MapperTest, DepthInMetresAndInMillimetresGiveTheSameMap) {
     const FrameStatus b = metres.process(withDepth(truth, depth_m), cv::Mat());
     EXPECT_TRUE(a.T_map_camera.matrix() == b.T_map_camera.matrix());
   }
-  EXPECT_EQ(millimetres.map().surfels().z, metres.map().surfels().z);
+  EXPECT_EQ(millimetres.map().collect().z, metres.map().collect().z);
 }
 
 TEST_F(MapperTest, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -186,8 +186,8 @@ TEST_F(MapperTest, GivesTheSameBitsForAnyNumberOfThreads) {
     for (int i = 0; i < 12; ++i) mappers[k].process(room_.frame(i).frame, cv::Mat());
   }
   EXPECT_TRUE(mappers[0].view().T_map_camera.matrix() == mappers[1].view().T_map_camera.matrix());
-  EXPECT_EQ(mappers[0].map().surfels().x, mappers[1].map().surfels().x);
-  EXPECT_EQ(mappers[0].map().surfels().confidence, mappers[1].map().surfels().confidence);
+  EXPECT_EQ(mappers[0].map().collect().x, mappers[1].map().collect().x);
+  EXPECT_EQ(mappers[0].map().collect().confidence, mappers[1].map().collect().confidence);
 }
 
 TEST_F(MapperTest, RenderedDepthAgreesWithTheTruth) {

@@ -61,7 +61,7 @@ TEST(PeopleStrip, TakesFewFramesAsTheyAre) {
 
 TEST(MapPicture, ShowsTheMapFromThreeSides) {
   SurfelMap map{MapConfig{}};
-  SurfelArrays& s = map.surfels();
+  SurfelArrays s;
   // A red wall 2 m ahead and, nearer, a green surface that turns its back on the first camera.
   for (int i = -60; i <= 60; ++i) {
     for (int j = -60; j <= 60; ++j) {
@@ -77,6 +77,7 @@ TEST(MapPicture, ShowsTheMapFromThreeSides) {
       }
     }
   }
+  map.add(s);
   PinholeCamera camera;
   camera.width = 640;
   camera.height = 480;

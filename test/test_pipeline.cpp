@@ -78,14 +78,14 @@ TEST(Pipeline, ABlurredFrameIsReportedAndNotFused) {
   const SyntheticSequence sequence(options);
   Pipeline pipeline = makePipeline(smallConfig(), sequence);
   for (int i = 0; i < 5; ++i) pipeline.process(sequence.frame(i).frame);
-  const std::size_t surfels = pipeline.mapper().map().surfels().size();
+  const std::size_t surfels = pipeline.mapper().map().size();
   RgbdFrame smeared = sequence.frame(5).frame;
   cv::GaussianBlur(smeared.color, smeared.color, {}, 6);
   const ProcessedFrame out = pipeline.process(smeared);
   EXPECT_FALSE(out.seen.blur.sharp);
   EXPECT_EQ(out.status.outcome, FrameOutcome::blurred);
   EXPECT_EQ(out.status.state, TrackingState::tracking);
-  EXPECT_EQ(pipeline.mapper().map().surfels().size(), surfels);
+  EXPECT_EQ(pipeline.mapper().map().size(), surfels);
 }
 
 TEST(Pipeline, ABadFrameInTheMiddleIsDroppedAndTheRestGoesOn) {

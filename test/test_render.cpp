@@ -18,9 +18,9 @@ struct Disc {
 };
 
 void add(SurfelMap& map, const Disc& d) {
-  SurfelArrays& s = map.surfels();
-  const std::size_t i = s.size();
-  s.forEachArray([&](auto& array) { array.resize(i + 1); });
+  SurfelArrays s;
+  s.resize(1);
+  const std::size_t i = 0;
   s.x[i] = d.position.x();
   s.y[i] = d.position.y();
   s.z[i] = d.position.z();
@@ -30,6 +30,7 @@ void add(SurfelMap& map, const Disc& d) {
   s.r[i] = s.g[i] = s.b[i] = d.grey;
   s.radius[i] = d.radius;
   s.confidence[i] = d.confidence;
+  map.add(s);
 }
 
 /// A wall at z = 2 of overlapping discs, one a pixel, with noise in the depth.
@@ -73,7 +74,7 @@ TEST(SurfelRenderer, ShowsTheNearestSurface) {
   add(map, {{0, 0, 1.0F}, {0, 0, -1}, 0.05F, 100, 7});
   const ModelView view = render(map);
   EXPECT_NEAR(view.depth_m.at<float>(60, 80), 1.0, 1e-5);
-  EXPECT_EQ(view.index.at<int>(60, 80), smallCamera().width * smallCamera().height);
+  EXPECT_NEAR(view.intensity.at<float>(60, 80), 7, 1e-3);
   EXPECT_NEAR(view.depth_m.at<float>(20, 20), 2.0, 1e-5);
 }
 
@@ -101,9 +102,12 @@ TEST(SurfelRenderer, InactiveSurfelsAreLeftOutWhenAsked) {
   add(map, {{0, 0, 1.0F}});
   for (int i = 0; i < 6; ++i) map.advance();
   RenderOptions all;
-  all.only_active = false;
+  all.age = SurfelAge::all;
+  RenderOptions inactive;
+  inactive.age = SurfelAge::inactive;
   EXPECT_EQ(cv::countNonZero(render(map).depth_m), 0);
   EXPECT_GT(cv::countNonZero(render(map, all).depth_m), 0);
+  EXPECT_GT(cv::countNonZero(render(map, inactive).depth_m), 0);
 }
 
 TEST(SurfelRenderer, DoesNotShowTheBackOfASurfel) {
@@ -145,7 +149,7 @@ TEST(SurfelRenderer, GivesTheSameBitsForAnyNumberOfThreads) {
     views[i] = render(map);
   }
   EXPECT_EQ(cv::norm(views[0].depth_m, views[1].depth_m, cv::NORM_INF), 0);
-  EXPECT_EQ(cv::norm(views[0].index, views[1].index, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(views[0].normal_x, views[1].normal_x, cv::NORM_INF), 0);
 }
 
 }  // namespace

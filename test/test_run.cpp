@@ -90,7 +90,7 @@ Result runThreaded() {
     result.add(frame);
     return true;
   });
-  result.surfel_x = pipeline->mapper().map().surfels().x;
+  result.surfel_x = pipeline->mapper().map().collect().x;
   return result;
 }
 
@@ -99,7 +99,7 @@ Result runSerially() {
   const auto pipeline = makePipeline();
   Result result;
   while (auto next = source.next()) result.add(pipeline->process(next->frame));
-  result.surfel_x = pipeline->mapper().map().surfels().x;
+  result.surfel_x = pipeline->mapper().map().collect().x;
   return result;
 }
 

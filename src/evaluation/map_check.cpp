@@ -21,7 +21,7 @@ DepthCheck::DepthCheck(const SurfelMap& map) : map_(map), histogram_(kBins) {}
 void DepthCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
                      const Eigen::Isometry3d& T_map_camera) {
   RenderOptions options;
-  options.only_active = false;
+  options.age = SurfelAge::all;
   renderer_.render(map_, frame.camera, T_map_camera, options, view_);
   depthInMetres(frame, kMinDepthM, kMaxDepthM, depth_m_);
   if (!mask.empty()) depth_m_.setTo(0, mask != 0);

@@ -56,18 +56,17 @@ void unpack(const char* in, std::size_t i, SurfelArrays& s) {
 }  // namespace
 
 std::size_t saveMap(const std::string& path, const SurfelMap& map) {
-  const SurfelArrays& surfels = map.surfels();
   const std::size_t count = map.stableCount();
   AtomicFile file(path);
   file.stream() << kFormat << "comment surfels of posefusion: map frame, metres\n"
                 << "element vertex " << count << "\n"
                 << kProperties;
   std::array<char, kVertexBytes> vertex{};
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    if (!map.isStable(i)) continue;
+  map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
+    if (!map.isStable(surfels, i)) return;
     pack(surfels, i, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
-  }
+  });
   file.commit();
   return count;
 }
@@ -89,7 +88,7 @@ SurfelArrays loadMap(const std::string& path) {
     throw InputError(path + ": is not whole, expected " + std::to_string(count) + " surfels");
   }
   SurfelArrays surfels;
-  surfels.forEachArray([&](auto& array) { array.resize(count); });
+  surfels.resize(count);
   for (std::size_t i = 0; i < count; ++i) unpack(&text[begin + i * kVertexBytes], i, surfels);
   return surfels;
 }

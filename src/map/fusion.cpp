@@ -2,152 +2,136 @@
 #include "posefusion/map/fusion.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
+#include <vector>
 
+#include "insertion.hpp"
+#include "posefusion/core/error.hpp"
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/core/rigid_motion.hpp"
+#include "posefusion/map/visibility.hpp"
 #include "surfel_update.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::size_t kSurfelGrain = 4096;
-// Moving all arrays costs more than carrying a few dead surfels for some frames: they are compacted
-// when more than one surfel in so many is to go, and now and then anyway.
+// A block is compacted when more than one of so many surfels is to go, and now and then anyway:
+// moving all arrays costs more than carrying a few dead surfels for some frames.
 constexpr std::size_t kCompactionShare = 50;
 constexpr int kCompactionFrames = 10;
+// Blocks out of view are cleaned in turn, each once in so many frames.
+constexpr int kCleaningFrames = 30;
 
-/// Smallest valid depth of 3x3 pixels where the centre is valid, else 0.
-void nearestOf3x3(const cv::Mat& depth, cv::Mat& nearest) {
-  nearest.create(depth.size(), CV_32FC1);
+/// Where all of 3x3 pixels see at least that far (m); 0 where the centre sees nothing.
+POSEFUSION_SIMD_CLONES
+void nearestOf3x3(const float* above, const float* row, const float* below, float* nearest,
+                  int width) {
+  constexpr float kFar = 1e9F;
+  for (int u = 0; u < width; ++u) {
+    const int left = u > 0 ? u - 1 : 0, right = u < width - 1 ? u + 1 : width - 1;
+    float smallest = kFar;
+    for (const float* d : {above, row, below}) {
+      const float a = d[left], b = d[u], c = d[right];
+      const float fa = a > 0 ? a : kFar, fb = b > 0 ? b : kFar, fc = c > 0 ? c : kFar;
+      const float ab = fa < fb ? fa : fb, abc = ab < fc ? ab : fc;
+      smallest = smallest < abc ? smallest : abc;
+    }
+    nearest[u] = row[u] > 0 ? smallest : 0.0F;
+  }
+}
+
+void findFreeSpace(const WorkingFrame& frame, cv::Mat& free_m) {
+  free_m.create(frame.depth_m.size(), CV_32FC1);
+  const cv::Mat& depth = frame.depth_m;
   parallelFor(depth.rows, 16, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < depth.cols; ++u) {
-        float smallest = depth.at<float>(v, u);
-        if (smallest > 0) {
-          for (int row = std::max(0, v - 1); row <= std::min(depth.rows - 1, v + 1); ++row) {
-            const float* d = depth.ptr<float>(row);
-            for (int col = std::max(0, u - 1); col <= std::min(depth.cols - 1, u + 1); ++col) {
-              if (d[col] > 0) smallest = std::min(smallest, d[col]);
-            }
-          }
-        }
-        nearest.at<float>(v, u) = smallest;
-      }
+      nearestOf3x3(depth.ptr<float>(std::max(0, v - 1)), depth.ptr<float>(v),
+                   depth.ptr<float>(std::min(depth.rows - 1, v + 1)), free_m.ptr<float>(v),
+                   depth.cols);
     }
   });
-}
-
-bool isWanted(const WorkingFrame& frame, const std::vector<std::uint8_t>& explained, int u, int v) {
-  return explained[v * frame.camera.width + u] == 0 && frame.depth_m.at<float>(v, u) > 0 &&
-         frame.levels[0].normal_z.at<float>(v, u) < 0;
-}
-
-void insertSurfel(const WorkingFrame& frame, const RigidMotion& to_map, int now, int u, int v,
-                  std::size_t i, SurfelArrays& s) {
-  const float z = frame.depth_m.at<float>(v, u);
-  const auto fx = static_cast<float>(frame.camera.fx), fy = static_cast<float>(frame.camera.fy);
-  const float x = (static_cast<float>(u) - static_cast<float>(frame.camera.cx)) / fx * z;
-  const float y = (static_cast<float>(v) - static_cast<float>(frame.camera.cy)) / fy * z;
-  const FrameLevel& level = frame.levels[0];
-  to_map.point(x, y, z, s.x[i], s.y[i], s.z[i]);
-  to_map.direction(level.normal_x.at<float>(v, u), level.normal_y.at<float>(v, u),
-                   level.normal_z.at<float>(v, u), s.nx[i], s.ny[i], s.nz[i]);
-  const auto& color = frame.color.at<cv::Vec3b>(v, u);
-  s.r[i] = color[0];
-  s.g[i] = color[1];
-  s.b[i] = color[2];
-  const float cosine = -(level.normal_x.at<float>(v, u) * x + level.normal_y.at<float>(v, u) * y +
-                         level.normal_z.at<float>(v, u) * z) /
-                       std::sqrt(x * x + y * y + z * z);
-  s.radius[i] = footprintRadius(z, fx, cosine);
-  s.weight[i] = measurementWeight(z);
-  s.confidence[i] = 1.0F;
-  s.created[i] = s.seen[i] = now;
-  s.violations[i] = 0;
-}
-
-/// Appends a surfel for each unexplained pixel, row by row. Returns how many.
-std::size_t insertUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
-                              const std::vector<std::uint8_t>& explained,
-                              std::vector<std::uint32_t>& row_start, SurfelMap& map) {
-  const int rows = frame.camera.height, cols = frame.camera.width;
-  row_start.assign(rows + 1, 0);
-  parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < cols; ++u) row_start[v + 1] += isWanted(frame, explained, u, v) ? 1 : 0;
-    }
-  });
-  for (int v = 0; v < rows; ++v) row_start[v + 1] += row_start[v];
-  SurfelArrays& s = map.surfels();
-  const std::size_t first = s.size();
-  const std::size_t room = std::max(map.capacity(), first) - first;
-  const std::size_t wanted = row_start[rows], count = std::min(wanted, room);
-  map.countRefused(wanted - count);
-  s.forEachArray([&](auto& array) { array.resize(first + count); });
-  const RigidMotion to_map(T_map_camera);
-  parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      std::size_t next = row_start[v];
-      for (int u = 0; u < cols && next < count; ++u) {
-        if (!isWanted(frame, explained, u, v)) continue;
-        insertSurfel(frame, to_map, map.frame(), u, v, first + next, s);
-        ++next;
-      }
-    }
-  });
-  return count;
-}
-
-/// Unstable surfels that were not confirmed, and those that frames see through.
-bool isDoomed(const SurfelMap& map, std::size_t i) {
-  const SurfelArrays& s = map.surfels();
-  if (s.violations[i] > map.config().max_violations) return true;
-  return !map.isStable(i) && map.frame() - s.seen[i] > map.config().max_unstable_age_frames;
 }
 
 }  // namespace
 
+/// What is kept between calls.
+struct Fuser::Scratch {
+  Evidence evidence;
+  std::vector<std::uint32_t> visible;  // blocks in view of the frame
+  SurfelArrays fresh;                  // new surfels, in the order of their pixels
+};
+
+Fuser::Fuser() : scratch_(std::make_unique<Scratch>()) {}
+Fuser::~Fuser() = default;
+
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
-                         SurfelMap& map) {
+                         SurfelMap& map, const FusionOptions& options) {
   map.advance();
   FusionCounts counts;
-  nearestOf3x3(frame.depth_m, nearest_m_);
-  explained_.assign(frame.depth_m.total(), 0);
-  const SurfelUpdate update(frame, nearest_m_, T_map_camera, map, explained_);
-  const std::size_t old_size = map.surfels().size();
-  doomed_.resize(old_size);
-  counts.merged = deterministicSum<std::size_t>(old_size, kSurfelGrain,
-                                                [&](std::size_t begin, std::size_t end) {
-                                                  std::size_t merged = 0;
-                                                  for (std::size_t i = begin; i < end; ++i) {
-                                                    if (map.isActive(i) && update.update(i))
-                                                      ++merged;
-                                                    doomed_[i] = isDoomed(map, i) ? 1 : 0;
-                                                  }
-                                                  return merged;
-                                                });
-  const std::size_t doomed = std::count(doomed_.begin(), doomed_.end(), 1);
-  if (doomed * kCompactionShare > old_size ||
-      (doomed > 0 && map.frame() % kCompactionFrames == 0)) {
-    counts.removed = compact(doomed_, map.surfels());
-  }
-  counts.inserted = insertUnexplained(frame, T_map_camera, explained_, row_start_, map);
+  Scratch& s = *scratch_;
+  update(frame, T_map_camera, options, map, counts);
+  counts.removed = clean(map);
+  surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence.explained, s.fresh);
+  counts.inserted = map.add(s.fresh);
   return counts;
 }
 
-std::size_t compact(const std::vector<std::uint8_t>& doomed, SurfelArrays& surfels) {
-  std::size_t kept = 0;
-  surfels.forEachArray([&](auto& array) {
-    kept = 0;
-    for (std::size_t i = 0; i < array.size(); ++i) {
-      array[kept] = array[i];
-      kept += doomed[i] == 0 ? 1 : 0;
+void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
+                   const FusionOptions& options, SurfelMap& map, FusionCounts& counts) {
+  Scratch& s = *scratch_;
+  findFreeSpace(frame, s.evidence.free_m);
+  s.evidence.explained.assign(frame.depth_m.total(), 0);
+  double farthest_m = 0;
+  cv::minMaxLoc(s.evidence.free_m, nullptr, &farthest_m);
+  // A surfel farther than all that was measured can still agree with it.
+  farthest_m += 2.0 * surfaceTolerance(static_cast<float>(farthest_m), 5.0F);
+  s.visible = visibleBlocks(map, frame.camera, T_map_camera, farthest_m);
+  const auto ranges = rangesOf(map, s.visible);
+  const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);
+  std::vector<SurfelUpdate::Result> results(ranges.size());
+  parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      results[k] = update.update(ranges[k], map.blocks_[ranges[k].block].surfels);
     }
-    array.resize(kept);
   });
-  return doomed.size() - kept;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    counts.merged += results[k].merged;
+    map.blocks_[ranges[k].block].bounds.extend(results[k].moved);
+  }
+}
+
+/// Sweeps up the dead surfels of the blocks in view, and in some of the others.
+std::size_t Fuser::clean(SurfelMap& map) {
+  std::vector<std::uint32_t> blocks = scratch_->visible;
+  for (auto i = static_cast<std::uint32_t>(map.frame() % kCleaningFrames); i < map.blocks_.size();
+       i += kCleaningFrames) {
+    if (map.blocks_[i].any_unstable) blocks.push_back(i);
+  }
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  const auto removed =
+      deterministicSum<std::size_t>(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          SurfelBlock& block = map.blocks_[blocks[k]];
+          const SurfelArrays& s = block.surfels;
+          std::size_t dead = 0, unstable = 0;
+          for (std::size_t i = 0; i < s.size(); ++i) {
+            dead += map.isDead(s, i) ? 1 : 0;
+            unstable += map.isStable(s, i) ? 0 : 1;
+          }
+          block.any_unstable = unstable > 0;
+          const bool turn =
+              map.frame() % kCompactionFrames == static_cast<int>(blocks[k] % kCompactionFrames);
+          if (dead * kCompactionShare <= s.size() && !(turn && dead > 0)) continue;
+          count += map.removeFrom(block, [&](const SurfelArrays& surfels, std::size_t i) {
+            return map.isDead(surfels, i);
+          });
+        }
+        return count;
+      });
+  if (removed > 0) map.countMemory();
+  return removed;
 }
 
 }  // namespace pf

@@ -5,138 +5,142 @@
 #include <cmath>
 #include <cstring>
 
+#include "disc.hpp"
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/core/rigid_motion.hpp"
+#include "posefusion/map/visibility.hpp"
+#include "projection.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::size_t kSurfelGrain = 4096;
+constexpr std::size_t kPixelGrain = 1 << 14;
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
-// A disc seen under a flatter angle than this is drawn as if it faced the camera: the plane
-// intersection is of no use there.
-constexpr float kMinCosine = 0.15F;
-constexpr float kNearM = 0.1F;
 constexpr float kMaxSplatRadiusPx = 12.0F;
 constexpr float kAlmostOne = 0.9999F;  // int(x + kAlmostOne) rounds x up
 
 /// Discs closer together than this (m) belong to one surface.
 inline float surfaceThickness(float z) { return surfaceTolerance(z, 5.0F); }
 
-/// A surfel in the camera frame.
-struct Disc {
-  float x, y, z, nx, ny, nz;
-  float offset;           ///< n . (x, y, z): the disc's plane
-  float inverse_radius2;  ///< 1 / radius^2
-};
-
-/// Where a ray meets a disc.
-struct Hit {
-  float depth = 0;     ///< along the optical axis; 0 when the ray misses
-  float distance = 0;  ///< from the disc's centre, as part of its radius, squared
-};
-
-inline Hit intersect(const Disc& d, float ray_x, float ray_y) {
-  const float cosine = d.nx * ray_x + d.ny * ray_y + d.nz;  // times the length of the ray
-  const bool steep =
-      cosine * cosine < kMinCosine * kMinCosine * (ray_x * ray_x + ray_y * ray_y + 1);
-  const float depth = steep ? d.z : d.offset / cosine;
-  const float dx = ray_x * depth - d.x, dy = ray_y * depth - d.y, dz = depth - d.z;
-  const float distance = (dx * dx + dy * dy + dz * dz) * d.inverse_radius2;
-  if (distance > 1.0F || depth < kNearM) return {};
-  return {depth, distance};
-}
-
-/// Orders hits on a pixel: stable before unstable, then by `value` (>= 0), then by index.
-std::uint64_t keyOf(bool stable, float value, std::size_t index) {
+/// Orders hits on a pixel: stable before unstable, then by `value` (>= 0), then by disc.
+inline std::uint64_t keyOf(bool stable, float value, std::size_t disc) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);  // floats that are not negative order like their bits
-  return (stable ? 0 : std::uint64_t{1} << 63) | (std::uint64_t{bits} << 32) | index;
+  return (stable ? 0 : std::uint64_t{1} << 63) | (std::uint64_t{bits} << 32) | disc;
 }
 
-bool stableOf(std::uint64_t key) { return key >> 63 == 0; }
+inline bool stableOf(std::uint64_t key) { return key >> 63 == 0; }
 
-float valueOf(std::uint64_t key) {
+inline float valueOf(std::uint64_t key) {
   const auto bits = static_cast<std::uint32_t>(key >> 32) & 0x7fffffffU;
   float value = 0;
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }
 
-void keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
+inline void keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
   std::uint64_t old = slot.load(std::memory_order_relaxed);
   while (key < old && !slot.compare_exchange_weak(old, key, std::memory_order_relaxed)) {
   }
 }
 
-class Splatter {
- public:
-  Splatter(const SurfelArrays& surfels, const PinholeCamera& camera,
-           const Eigen::Isometry3d& T_map_camera)
-      : s_(surfels),
-        T_(T_map_camera.inverse()),
-        width_(camera.width),
-        height_(camera.height),
-        fx_(static_cast<float>(camera.fx)),
-        fy_(static_cast<float>(camera.fy)),
-        cx_(static_cast<float>(camera.cx)),
-        cy_(static_cast<float>(camera.cy)),
-        inverse_fx_(1.0F / fx_),
-        inverse_fy_(1.0F / fy_) {}
+/// The rays through the pixels of a camera.
+struct Rays {
+  explicit Rays(const PinholeCamera& c)
+      : cx(static_cast<float>(c.cx)),
+        cy(static_cast<float>(c.cy)),
+        inverse_fx(1.0F / static_cast<float>(c.fx)),
+        inverse_fy(1.0F / static_cast<float>(c.fy)),
+        width(c.width),
+        height(c.height) {}
 
-  Disc disc(std::size_t i) const {
-    Disc d;
-    T_.point(s_.x[i], s_.y[i], s_.z[i], d.x, d.y, d.z);
-    turn(i, d);
-    return d;
+  float x(int u) const { return (static_cast<float>(u) - cx) * inverse_fx; }
+  float y(int v) const { return (static_cast<float>(v) - cy) * inverse_fy; }
+
+  float cx, cy, inverse_fx, inverse_fy;
+  int width, height;
+};
+
+/// Calls found(pixel, hit) for each pixel whose ray meets the disc.
+template <typename Found>
+void splat(const Disc& d, const Rays& rays, const Found& found) {
+  for (int v = d.first_v; v <= d.last_v; ++v) {
+    const float ray_y = rays.y(v);
+    for (int u = d.first_u; u <= d.last_u; ++u) {
+      const Hit hit = intersect(d, rays.x(u), ray_y, kNearM);
+      if (hit.depth > 0) found(v * rays.width + u, hit);
+    }
   }
+}
 
-  float rayX(int u) const { return (static_cast<float>(u) - cx_) * inverse_fx_; }
-  float rayY(int v) const { return (static_cast<float>(v) - cy_) * inverse_fy_; }
+/// Writes the discs of a range that the camera may see; returns their number.
+class DiscMaker {
+ public:
+  DiscMaker(const SurfelMap& map, const RenderOptions& options, const PinholeCamera& camera,
+            const Eigen::Isometry3d& T_map_camera)
+      : map_(map),
+        options_(options),
+        projection_(camera, T_map_camera),
+        to_camera_(T_map_camera.inverse()),
+        rays_(camera) {}
 
-  /// Calls found(pixel, hit) for each pixel whose ray meets disc i; false when none can.
-  template <typename Found>
-  bool splat(std::size_t i, const Found& found) const {
-    Disc d;
-    T_.point(s_.x[i], s_.y[i], s_.z[i], d.x, d.y, d.z);
-    if (d.z < kNearM) return false;
-    const float inverse_z = 1.0F / d.z;
-    const float u = d.x * inverse_z * fx_ + cx_, v = d.y * inverse_z * fy_ + cy_;
-    const float reach = std::min(s_.radius[i] * fx_ * inverse_z, kMaxSplatRadiusPx);
-    if (!(u + reach >= 0 && v + reach >= 0 && u - reach <= static_cast<float>(width_ - 1) &&
-          v - reach <= static_cast<float>(height_ - 1))) {
-      return false;
-    }
-    turn(i, d);
-    if (d.offset > 0) return false;  // seen from behind
-    // Casts cut towards zero: rounding down, since nothing below zero is left after max().
-    const int first_u = static_cast<int>(std::max(0.0F, u - reach) + kAlmostOne);
-    const int last_u = std::min(width_ - 1, static_cast<int>(u + reach));
-    const int first_v = static_cast<int>(std::max(0.0F, v - reach) + kAlmostOne);
-    const int last_v = std::min(height_ - 1, static_cast<int>(v + reach));
-    for (int row = first_v; row <= last_v; ++row) {
-      const float ray_y = rayY(row);
-      for (int col = first_u; col <= last_u; ++col) {
-        const Hit hit = intersect(d, rayX(col), ray_y);
-        if (hit.depth > 0) found(row * width_ + col, hit);
+  const Rays& rays() const { return rays_; }
+
+  std::uint32_t make(const SurfelRange& range, Disc* discs) const {
+    const SurfelArrays& s = map_.blocks()[range.block].surfels;
+    ProjectedRange seen;
+    project(s, range, projection_, seen);
+    std::uint32_t count = 0;
+    for (std::uint32_t k = 0; k < range.end - range.begin; ++k) {
+      // A disc that shows its back is not drawn.
+      if (seen.inside[k] == 0 || seen.facing[k] > 0) continue;
+      const std::uint32_t i = range.begin + k;
+      const bool stable = map_.isStable(s, i);
+      if ((!stable && options_.only_stable) || map_.isDead(s, i)) continue;
+      if (options_.age != SurfelAge::all &&
+          map_.isActive(s, i) != (options_.age == SurfelAge::active)) {
+        continue;
       }
+      Disc& d = discs[count];
+      if (!cover(seen, k, d)) continue;
+      d.x = seen.x[k];
+      d.y = seen.y[k];
+      d.z = seen.z[k];
+      to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], d.nx, d.ny, d.nz);
+      d.offset = seen.facing[k];
+      d.inverse_radius2 = 1.0F / (s.radius[i] * s.radius[i]);
+      d.slot = i;
+      d.stable = stable;
+      ++count;
     }
-    return true;
+    return count;
   }
 
  private:
-  /// What of the disc depends on its normal.
-  void turn(std::size_t i, Disc& d) const {
-    T_.direction(s_.nx[i], s_.ny[i], s_.nz[i], d.nx, d.ny, d.nz);
-    d.offset = d.nx * d.x + d.ny * d.y + d.nz * d.z;
-    d.inverse_radius2 = 1.0F / (s_.radius[i] * s_.radius[i]);
+  /// The pixels that the disc may cover; false for none.
+  bool cover(const ProjectedRange& seen, std::uint32_t k, Disc& d) const {
+    const float reach = std::min(seen.reach[k], kMaxSplatRadiusPx);
+    const float u = seen.u[k], v = seen.v[k];
+    // Casts cut towards zero: rounding down, since nothing below zero is left after max().
+    const float left = std::max(0.0F, u - reach) + kAlmostOne, right = u + reach;
+    const float top = std::max(0.0F, v - reach) + kAlmostOne, bottom = v + reach;
+    if (!(right >= 0 && bottom >= 0 && left < static_cast<float>(rays_.width) &&
+          top < static_cast<float>(rays_.height))) {
+      return false;
+    }
+    d.first_u = static_cast<std::int16_t>(left);
+    d.first_v = static_cast<std::int16_t>(top);
+    d.last_u = static_cast<std::int16_t>(std::min(right, static_cast<float>(rays_.width - 1)));
+    d.last_v = static_cast<std::int16_t>(std::min(bottom, static_cast<float>(rays_.height - 1)));
+    return d.first_u <= d.last_u && d.first_v <= d.last_v;
   }
 
-  const SurfelArrays& s_;
-  RigidMotion T_;
-  int width_, height_;
-  float fx_, fy_, cx_, cy_, inverse_fx_, inverse_fy_;
+  const SurfelMap& map_;
+  const RenderOptions& options_;
+  Projection projection_;
+  RigidMotion to_camera_;
+  Rays rays_;
 };
 
 void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color, ModelView& view) {
@@ -147,7 +151,6 @@ void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color
                          &view.intensity, &view.support}) {
     plane->create(size, CV_32FC1);
   }
-  view.index.create(size, CV_32SC1);
   view.stable.create(size, CV_8UC1);
   if (color) {
     view.color.create(size, CV_8UC3);
@@ -156,79 +159,95 @@ void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color
   }
 }
 
-void resolvePixel(const Splatter& splatter, const SurfelArrays& s, std::uint64_t key, int u, int v,
+/// Fills a pixel from the disc that it shows; `d` is null where it shows none.
+void resolvePixel(const Disc* d, const SurfelArrays* s, const Rays& rays, int u, int v,
                   ModelView& view) {
-  const bool hit = key != kNothing;
-  const auto i = static_cast<std::uint32_t>(key);
-  const Disc d = hit ? splatter.disc(i) : Disc{};
-  view.stable.at<std::uint8_t>(v, u) = hit && stableOf(key) ? 1 : 0;
-  view.index.at<int>(v, u) = hit ? static_cast<int>(i) : -1;
+  const std::uint32_t i = d != nullptr ? d->slot : 0;
+  view.stable.at<std::uint8_t>(v, u) = d != nullptr && d->stable ? 1 : 0;
   view.depth_m.at<float>(v, u) =
-      hit ? intersect(d, splatter.rayX(u), splatter.rayY(v)).depth : 0.0F;
-  view.normal_x.at<float>(v, u) = d.nx;
-  view.normal_y.at<float>(v, u) = d.ny;
-  view.normal_z.at<float>(v, u) = d.nz;
-  view.intensity.at<float>(v, u) = hit ? 0.299F * s.r[i] + 0.587F * s.g[i] + 0.114F * s.b[i] : 0.0F;
-  view.support.at<float>(v, u) = hit ? s.confidence[i] : 0.0F;
+      d != nullptr ? intersect(*d, rays.x(u), rays.y(v), kNearM).depth : 0.0F;
+  view.normal_x.at<float>(v, u) = d != nullptr ? d->nx : 0.0F;
+  view.normal_y.at<float>(v, u) = d != nullptr ? d->ny : 0.0F;
+  view.normal_z.at<float>(v, u) = d != nullptr ? d->nz : 0.0F;
+  view.intensity.at<float>(v, u) =
+      d != nullptr ? 0.299F * s->r[i] + 0.587F * s->g[i] + 0.114F * s->b[i] : 0.0F;
+  view.support.at<float>(v, u) = d != nullptr ? s->confidence[i] : 0.0F;
   if (view.color.empty()) return;
-  view.color.at<cv::Vec3b>(v, u) = hit ? cv::Vec3b(cv::saturate_cast<unsigned char>(s.r[i]),
-                                                   cv::saturate_cast<unsigned char>(s.g[i]),
-                                                   cv::saturate_cast<unsigned char>(s.b[i]))
+  view.color.at<cv::Vec3b>(v, u) = d != nullptr
+                                       ? cv::Vec3b(cv::saturate_cast<unsigned char>(s->r[i]),
+                                                   cv::saturate_cast<unsigned char>(s->g[i]),
+                                                   cv::saturate_cast<unsigned char>(s->b[i]))
                                        : cv::Vec3b(0, 0, 0);
-}
-
-/// Which surfels the options leave, and of which class.
-enum Shown : std::uint8_t { kHidden, kUnstable, kStable };
-
-Shown classOf(const SurfelMap& map, const RenderOptions& options, std::size_t i) {
-  if (options.only_active && !map.isActive(i)) return kHidden;
-  if (map.isStable(i)) return kStable;
-  return options.only_stable ? kHidden : kUnstable;
 }
 
 }  // namespace
 
-void SurfelRenderer::clear(std::size_t pixels) {
-  if (buffer_size_ != pixels) {
-    nearest_ = std::make_unique<Buffer>(pixels);
-    chosen_ = std::make_unique<Buffer>(pixels);
-    buffer_size_ = pixels;
-  }
-  parallelFor(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      nearest_[i].store(kNothing, std::memory_order_relaxed);
-      chosen_[i].store(kNothing, std::memory_order_relaxed);
+/// What is kept between calls. Range k owns the discs from k * kRangeSurfels on.
+struct SurfelRenderer::Buffers {
+  using Keys = std::unique_ptr<std::atomic<std::uint64_t>[]>;
+  Keys nearest, chosen;  // per pixel
+  std::size_t pixels = 0;
+  std::unique_ptr<Disc[]> discs;  // never initialised as a whole: most of it is never touched
+  std::size_t disc_capacity = 0;
+  std::vector<std::uint32_t> counts;  // discs of each range
+
+  void prepare(std::size_t pixel_count, std::size_t range_count) {
+    if (pixels != pixel_count) {
+      nearest = std::make_unique<std::atomic<std::uint64_t>[]>(pixel_count);
+      chosen = std::make_unique<std::atomic<std::uint64_t>[]>(pixel_count);
+      pixels = pixel_count;
     }
-  });
-}
+    counts.assign(range_count, 0);
+    if (disc_capacity < range_count * kRangeSurfels) {
+      disc_capacity = (range_count + range_count / 4) * kRangeSurfels;
+      discs.reset(new Disc[disc_capacity]);
+    }
+    parallelFor(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        nearest[i].store(kNothing, std::memory_order_relaxed);
+        chosen[i].store(kNothing, std::memory_order_relaxed);
+      }
+    });
+  }
+
+  /// Calls visit(disc number, disc) for the discs of a range.
+  template <typename Visit>
+  void forDiscs(std::size_t range, const Visit& visit) const {
+    const std::size_t first = range * kRangeSurfels;
+    for (std::size_t d = first; d < first + counts[range]; ++d) visit(d, discs[d]);
+  }
+};
+
+SurfelRenderer::SurfelRenderer() : buffers_(std::make_unique<Buffers>()) {}
+SurfelRenderer::~SurfelRenderer() = default;
 
 void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
                             const Eigen::Isometry3d& T_map_camera, const RenderOptions& options,
                             ModelView& view) {
-  clear(static_cast<std::size_t>(camera.width) * camera.height);
-  const SurfelArrays& surfels = map.surfels();
-  const Splatter splatter(surfels, camera, T_map_camera);
-  shown_.resize(surfels.size());
-  parallelFor(surfels.size(), kSurfelGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      shown_[i] = classOf(map, options, i);
-      if (shown_[i] == kHidden) continue;
-      const bool stable = shown_[i] == kStable;
-      const bool visible = splatter.splat(i, [&](int pixel, const Hit& hit) {
-        keepSmaller(nearest_[pixel], keyOf(stable, hit.depth, i));
+  const auto ranges = rangesOf(map, visibleBlocks(map, camera, T_map_camera, options.max_depth_m));
+  const DiscMaker maker(map, options, camera, T_map_camera);
+  const Rays& rays = maker.rays();
+  Buffers& b = *buffers_;
+  b.prepare(static_cast<std::size_t>(camera.width) * camera.height, ranges.size());
+  parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      b.counts[k] = maker.make(ranges[k], &b.discs[k * kRangeSurfels]);
+      b.forDiscs(k, [&](std::size_t number, const Disc& d) {
+        splat(d, rays, [&](int pixel, const Hit& hit) {
+          keepSmaller(b.nearest[pixel], keyOf(d.stable, hit.depth, number));
+        });
       });
-      if (!visible) shown_[i] = kHidden;
     }
   });
-  parallelFor(surfels.size(), kSurfelGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (shown_[i] == kHidden) continue;
-      const bool stable = shown_[i] == kStable;
-      splatter.splat(i, [&](int pixel, const Hit& hit) {
-        const std::uint64_t nearest = nearest_[pixel].load(std::memory_order_relaxed);
-        const float depth = valueOf(nearest);
-        if (stableOf(nearest) != stable || hit.depth > depth + surfaceThickness(depth)) return;
-        keepSmaller(chosen_[pixel], keyOf(stable, hit.distance, i));
+  parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      b.forDiscs(k, [&](std::size_t number, const Disc& d) {
+        splat(d, rays, [&](int pixel, const Hit& hit) {
+          const std::uint64_t nearest = b.nearest[pixel].load(std::memory_order_relaxed);
+          const float depth = valueOf(nearest);
+          if (stableOf(nearest) != d.stable || hit.depth > depth + surfaceThickness(depth)) return;
+          keepSmaller(b.chosen[pixel], keyOf(d.stable, hit.distance, number));
+        });
       });
     }
   });
@@ -236,8 +255,12 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   parallelFor(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       for (int u = 0; u < camera.width; ++u) {
-        const std::uint64_t key = chosen_[v * camera.width + u].load(std::memory_order_relaxed);
-        resolvePixel(splatter, surfels, key, u, v, view);
+        const std::uint64_t key = b.chosen[v * camera.width + u].load(std::memory_order_relaxed);
+        const bool hit = key != kNothing;
+        const auto number = static_cast<std::uint32_t>(key);
+        const std::uint32_t block = hit ? ranges[number / kRangeSurfels].block : 0;
+        resolvePixel(hit ? &b.discs[number] : nullptr, hit ? &map.blocks()[block].surfels : nullptr,
+                     rays, u, v, view);
       }
     }
   });

@@ -1,22 +1,162 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/map/surfel_map.hpp"
 
-namespace pf {
+#include <algorithm>
+#include <cmath>
 
-std::size_t SurfelMap::capacity() const {
-  return static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0) /
-         SurfelArrays::bytesPerSurfel();
+#include "posefusion/core/parallel.hpp"
+
+namespace pf {
+namespace {
+
+// Blocks grow by this many surfels (8 kB), or by an eighth where that is more: little is reserved
+// in vain, and no single step moves much.
+constexpr std::size_t kChunk = 128;
+constexpr std::size_t kGrowthShare = 8;
+// Cells are numbered with 21 bits an axis: a kilometre each way at any sensible side.
+constexpr int kCellBits = 21;
+constexpr float kCellLimit = static_cast<float>(1 << (kCellBits - 1)) - 1.0F;
+
+std::uint64_t cellOf(float x, float side) {
+  const float cell = std::floor(x / side);
+  const float held = std::min(kCellLimit, std::max(-kCellLimit, cell));
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(held) + (1 << (kCellBits - 1)));
+}
+
+std::size_t roundedUp(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
+
+std::size_t memoryOf(const SurfelBlock& block) {
+  return sizeof(SurfelBlock) + block.surfels.x.capacity() * SurfelArrays::bytesPerSurfel();
+}
+
+void fit(const SurfelArrays& s, std::size_t first, SurfelBlock& block) {
+  for (std::size_t i = first; i < s.size(); ++i) {
+    block.bounds.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
+    block.largest_radius = std::max(block.largest_radius, s.radius[i]);
+  }
+}
+
+}  // namespace
+
+std::size_t SurfelMap::size() const {
+  std::size_t count = 0;
+  for (const SurfelBlock& block : blocks_) count += block.surfels.size();
+  return count;
 }
 
 std::size_t SurfelMap::stableCount() const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < surfels_.size(); ++i) count += isStable(i) ? 1 : 0;
+  forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += isStable(s, i) ? 1 : 0; });
   return count;
 }
 
+SurfelArrays SurfelMap::collect() const {
+  SurfelArrays all;
+  for (const SurfelBlock& block : blocks_) {
+    all.forEachArray(block.surfels, [](auto& array, const auto& part) {
+      array.insert(array.end(), part.begin(), part.end());
+    });
+  }
+  return all;
+}
+
+std::uint32_t SurfelMap::blockAt(float x, float y, float z) {
+  const std::uint64_t key = (cellOf(x, block_side_m_) << (2 * kCellBits)) |
+                            (cellOf(y, block_side_m_) << kCellBits) | cellOf(z, block_side_m_);
+  const auto found = index_.find(key);
+  if (found != index_.end()) return found->second;
+  const auto limit = static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0);
+  if (memory_ + sizeof(SurfelBlock) + kChunk * SurfelArrays::bytesPerSurfel() > limit) {
+    return kNoBlock;
+  }
+  memory_ += sizeof(SurfelBlock);
+  const auto block = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.emplace_back();
+  index_.emplace(key, block);
+  return block;
+}
+
+std::size_t SurfelMap::makeRoom(SurfelBlock& block, std::size_t count) {
+  const std::size_t size = block.surfels.size(), held = block.surfels.x.capacity();
+  if (size + count <= held) return count;
+  const auto limit = static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0);
+  const std::size_t left = (limit - std::min(limit, memory_)) / SurfelArrays::bytesPerSurfel();
+  const std::size_t wanted = roundedUp(std::max(size + count, held + held / kGrowthShare));
+  const std::size_t reserved = std::min(wanted, held + left);
+  if (reserved > held) {
+    block.surfels.forEachArray([&](auto& array) { array.reserve(reserved); });
+    memory_ += (reserved - held) * SurfelArrays::bytesPerSurfel();
+  }
+  return std::min(count, reserved - size);
+}
+
+std::size_t SurfelMap::add(const SurfelArrays& s) {
+  // Bring the surfels of each block together, keeping their order.
+  struct Group {
+    std::uint32_t block;
+    std::vector<std::uint32_t> members;
+  };
+  std::vector<Group> groups;
+  std::unordered_map<std::uint32_t, std::size_t> group_of;
+  std::uint32_t last_block = kNoBlock;
+  std::size_t group = 0, finite = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (!std::isfinite(s.x[i] + s.y[i] + s.z[i])) continue;
+    ++finite;
+    const std::uint32_t block = blockAt(s.x[i], s.y[i], s.z[i]);
+    if (block == kNoBlock) continue;
+    if (block != last_block) {
+      group = group_of.emplace(block, groups.size()).first->second;
+      if (group == groups.size()) groups.push_back({block, {}});
+      last_block = block;
+    }
+    groups[group].members.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::size_t added = 0;
+  for (Group& g : groups) {
+    g.members.resize(makeRoom(blocks_[g.block], g.members.size()));
+    added += g.members.size();
+  }
+  parallelFor(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      SurfelBlock& block = blocks_[groups[k].block];
+      const std::size_t first = block.surfels.size();
+      block.surfels.append(s, groups[k].members.data(), groups[k].members.size());
+      fit(block.surfels, first, block);
+      block.any_unstable = true;
+    }
+  });
+  refused_ += finite - added;
+  return added;
+}
+
+void SurfelMap::keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& block) const {
+  const std::size_t wanted = roundedUp(kept.size());
+  const bool shrink = 2 * wanted < block.surfels.x.capacity();
+  block.surfels.forEachArray([&](auto& array) {
+    for (std::size_t k = 0; k < kept.size(); ++k) array[k] = array[kept[k]];
+    array.resize(kept.size());
+    if (!shrink) return;
+    std::decay_t<decltype(array)> smaller;
+    smaller.reserve(wanted);
+    smaller.assign(array.begin(), array.end());
+    array.swap(smaller);
+  });
+  block.bounds.setEmpty();
+  block.largest_radius = 0;
+  fit(block.surfels, 0, block);
+}
+
+void SurfelMap::countMemory() {
+  memory_ = 0;
+  for (const SurfelBlock& block : blocks_) memory_ += memoryOf(block);
+}
+
 void SurfelMap::clear() {
-  surfels_.forEachArray([](auto& array) { array.clear(); });
+  blocks_.clear();
+  index_.clear();
   frame_ = -1;
+  memory_ = 0;
   refused_ = 0;
 }
 

@@ -1,59 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/frame/working_frame.hpp"
+#include "posefusion/map/fusion.hpp"
 #include "posefusion/map/surfel_map.hpp"
+#include "projection.hpp"
 
 namespace pf {
 
-/// Weight of a measurement: 1 / variance, 1 at a distance of 1 m.
-inline float measurementWeight(float z) {
-  const float ratio = depthSigma(1.0F) / depthSigma(z);
-  return std::min(ratio * ratio, 2.0F);
-}
+/// What a frame says about the space along its pixels' rays. Planes have the working frame's size.
+struct Evidence {
+  cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
+  cv::Mat person_m;  ///< CV_32FC1: depth of a person, 0 = none; may be empty
+  std::vector<std::uint8_t> explained;  ///< per pixel, 1: some surfel agrees
+};
 
-/// Radius (m) of the disc that fills a pixel's footprint on a surface seen at this cosine, at most
-/// doubled. It reaches to the neighbouring pixels' centres, so that discs overlap and leave no
-/// holes.
-inline float footprintRadius(float z, float fx, float cosine) {
-  return z / fx / std::max(cosine, 0.5F);
-}
-
-/// The update of single surfels from one frame. Threads may share it: each call of update() writes
-/// surfel i alone, and marks pixels in `explained`.
+/// The update of the surfels of one range from one frame. Threads may share it: each call writes
+/// the surfels of its range alone, and marks pixels as explained.
 class SurfelUpdate {
  public:
-  /// `nearest_m`: smallest depth around each pixel of the frame. All arguments must outlive this.
-  SurfelUpdate(const WorkingFrame& frame, const cv::Mat& nearest_m,
-               const Eigen::Isometry3d& T_map_camera, SurfelMap& map,
-               std::vector<std::uint8_t>& explained);
+  /// All arguments must outlive this.
+  SurfelUpdate(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
+               const FusionOptions& options, const SurfelMap& map, Evidence& evidence);
 
-  /// True when this frame supports the surfel.
-  bool update(std::size_t i) const;
+  struct Result {
+    std::size_t merged = 0;     ///< surfels that this frame supports
+    Eigen::AlignedBox3f moved;  ///< the new places of those
+    void operator+=(const Result& other) {
+      merged += other.merged;
+      moved.extend(other.moved);
+    }
+  };
+  Result update(const SurfelRange& range, SurfelArrays& surfels) const;
 
  private:
-  float depthOnRay(int u, int v, float ray_x, float ray_y) const;
-  void explain(float fu, float fv, float radius_px) const;
-  void merge(std::size_t i, const Eigen::Vector3f& p, float measured, int u, int v) const;
-  void mergeNormal(std::size_t i, float share, const Eigen::Vector3f& n) const;
+  /// A surfel in the camera frame.
+  struct Place {
+    float x, y, z;
+    float fu, fv;    ///< pixel
+    int u, v;        ///< the same, rounded
+    float reach_px;  ///< radius
+    float facing;    ///< normal . (x, y, z): above 0 it is seen from behind
+  };
+  bool updateOne(SurfelArrays& s, std::size_t i, const Place& p) const;
+  void violate(SurfelArrays& s, std::size_t i) const;
+  float depthOnRay(const Place& p) const;
+  void explain(const Place& p) const;
+  void merge(SurfelArrays& s, std::size_t i, const Place& p, float measured) const;
+  void mergeNormal(SurfelArrays& s, std::size_t i, float share, const Eigen::Vector3f& n) const;
   Eigen::Vector3f normal(int u, int v) const;
 
   const WorkingFrame& frame_;
-  const cv::Mat& nearest_m_;
+  const FusionOptions& options_;
+  const SurfelMap& map_;
+  Evidence& evidence_;
+  Projection projection_;
   RigidMotion to_camera_, to_map_;
-  SurfelArrays& s_;
-  const MapConfig& config_;
-  int now_;
-  float min_cosine_;
-  std::vector<std::uint8_t>& explained_;
-  float fx_, fy_, cx_, cy_;
+  float min_cosine_, max_weight_;
 };
 
 }  // namespace pf

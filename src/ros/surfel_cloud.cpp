@@ -45,7 +45,6 @@ void describe(sensor_msgs::PointCloud2& cloud) {
 sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                                       const Eigen::Isometry3d& T_map_start,
                                       std::size_t max_points) {
-  const pf::SurfelArrays& s = map.surfels();
   const std::size_t stable = map.stableCount();
   const std::size_t step = max_points > 0 ? (stable + max_points - 1) / max_points : 1;
   const Eigen::Isometry3f T = T_map_start.cast<float>();
@@ -54,15 +53,15 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
   if (stable == 0) return cloud;
   cloud->data.resize((stable + step - 1) / step * sizeof(Point));
   std::size_t seen = 0, count = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    if (!map.isStable(i) || seen++ % step != 0) continue;
+  map.forEachSurfel([&](const pf::SurfelArrays& s, std::size_t i) {
+    if (!map.isStable(s, i) || seen++ % step != 0) return;
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
     const Point point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
                       n.x(),          n.y(), n.z(), s.radius[i],
                       s.confidence[i]};
     std::memcpy(&cloud->data[count++ * sizeof(Point)], &point, sizeof(Point));
-  }
+  });
   cloud->width = static_cast<std::uint32_t>(count);
   cloud->row_step = cloud->width * cloud->point_step;
   return cloud;

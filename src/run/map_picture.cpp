@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 
 namespace pf {
@@ -63,28 +62,20 @@ Eigen::Isometry3d lookAt(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& 
   return T;
 }
 
-template <typename Keep>
-SurfelMap select(const SurfelMap& map, const Keep& keep) {
-  SurfelMap selected = map;
-  std::vector<std::uint8_t> dropped(map.surfels().size());
-  for (std::size_t i = 0; i < dropped.size(); ++i) dropped[i] = keep(i) ? 0 : 1;
-  compact(dropped, selected.surfels());
-  return selected;
-}
-
 /// The surfels that do not turn their back on a viewer.
 SurfelMap frontOf(const SurfelMap& map, const Eigen::Vector3d& viewer) {
-  const SurfelArrays& s = map.surfels();
-  return select(map, [&](std::size_t i) {
+  SurfelMap front = map;
+  front.removeIf([&](const SurfelArrays& s, std::size_t i) {
     const Eigen::Vector3d to_viewer = viewer - Eigen::Vector3d(s.x[i], s.y[i], s.z[i]);
-    return to_viewer.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) > 0;
+    return to_viewer.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) <= 0;
   });
+  return front;
 }
 
 cv::Mat render(const SurfelMap& map, const PinholeCamera& camera, const Eigen::Isometry3d& T) {
   RenderOptions options;
   options.with_color = true;
-  options.only_active = false;
+  options.age = SurfelAge::all;
   ModelView view;
   SurfelRenderer().render(map, camera, T, options, view);
   cv::Mat picture = view.color.clone();
@@ -117,8 +108,9 @@ cv::Mat drawFromOutside(const SurfelMap& map, const Trajectory& trajectory,
 
 cv::Mat drawMap(const SurfelMap& map, const Trajectory& trajectory, const PinholeCamera& camera) {
   if (map.stableCount() == 0 || trajectory.empty()) return {};
-  const SurfelMap stable = select(map, [&](std::size_t i) { return map.isStable(i); });
-  const Eigen::AlignedBox3d box = boundsOf(stable.surfels(), trajectory);
+  SurfelMap stable = map;
+  stable.removeIf([&](const SurfelArrays& s, std::size_t i) { return !map.isStable(s, i); });
+  const Eigen::AlignedBox3d box = boundsOf(stable.collect(), trajectory);
   const Eigen::Matrix3d first = trajectory.front().T_world_camera.linear();
   const Eigen::Vector3d ahead = first.col(2), down = first.col(1), right = first.col(0);
   const Eigen::Vector3d slanted = 0.75 * down + ahead + 0.35 * right;

@@ -79,7 +79,13 @@ Location Mapper::State::locate(const StaticFrame& input) {
 }
 
 void Mapper::State::fuse(const Location& location) {
-  fuser.fuse(frame, location.T_map_camera, map);
+  // Colors of the map are those of its first exposure.
+  const Brightness& b = location.tracking.brightness;
+  FusionOptions options;
+  options.may_remove_stable = !location.is_recent_return;
+  options.gain = 1.0F / b.gain;
+  options.offset = -b.offset / b.gain;
+  fuser.fuse(frame, location.T_map_camera, map, options);
   renderer.render(map, frame.camera, location.T_map_camera, RenderOptions{}, view);
   model.assign(view, &frame.levels[0]);
 }
@@ -106,7 +112,7 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
   status.motion = location.motion;
-  status.surfels = s.map.surfels().size();
+  status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;
   return status;
 }
@@ -118,7 +124,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.outcome = outcome;
   status.T_map_camera =
       state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
-  status.surfels = state_->map.surfels().size();
+  status.surfels = state_->map.size();
   status.map_full = state_->map.refused() > 0;
   return status;
 }
@@ -131,7 +137,7 @@ ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T
   ModelView view;
   RenderOptions options;
   options.with_color = true;
-  options.only_active = false;
+  options.age = SurfelAge::all;
   SurfelRenderer().render(state_->map, camera, T_map_camera, options, view);
   return view;
 }

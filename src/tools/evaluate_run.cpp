@@ -22,12 +22,13 @@ namespace {
 
 using Poses = std::map<std::int64_t, Eigen::Isometry3d>;
 
-/// The saved map; all that was saved is stable.
-SurfelMap loadSavedMap(const std::string& path) {
+/// A map of saved surfels; all that was saved is stable.
+SurfelMap mapOf(const SurfelArrays& surfels) {
   MapConfig config;
   config.stable_confidence = 0.0;
+  config.memory_limit_mb = 1e6;
   SurfelMap map(config);
-  map.surfels() = loadMap(path);
+  map.add(surfels);
   return map;
 }
 
@@ -104,7 +105,8 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t
 }  // namespace
 
 void evaluateRun(const RunQuestion& q) {
-  const SurfelMap map = loadSavedMap(q.run + "/map.ply");
+  const SurfelArrays surfels = loadMap(q.run + "/map.ply");
+  const SurfelMap map = mapOf(surfels);
   const Trajectory estimate = loadTrajectory(q.run + "/trajectory.txt");
   posefusion_ros::InputOptions reading;
   reading.camera_file = q.camera;
@@ -115,7 +117,7 @@ void evaluateRun(const RunQuestion& q) {
   const std::string masks = q.masks.empty() ? q.input + "/mask" : q.masks;
 
   DepthCheck depth(map);
-  PeopleCheck people(map.surfels());
+  PeopleCheck people(surfels);
   Undistorter undistorter;
   std::size_t masked_frames = 0;
   for (std::size_t i = 0; auto next = source->next(); ++i) {

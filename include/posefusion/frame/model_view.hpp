@@ -20,7 +20,6 @@ struct ModelView {
   cv::Mat support;    ///< CV_32FC1, confidence of the surfel: frames that supported it
   cv::Mat color;      ///< CV_8UC3 R G B; empty unless asked for
   cv::Mat stable;     ///< CV_8UC1, 1 = a stable surfel; empty: not known
-  cv::Mat index;      ///< CV_32SC1, surfel in the map, -1 = nothing
 
   bool empty() const { return depth_m.empty(); }
 };

@@ -3,13 +3,29 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "posefusion/frame/working_frame.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
 namespace pf {
+
+/// What is known of a frame beside its pixels and its pose.
+struct FusionOptions {
+  /// False while the pose is on probation: nothing then counts against stable surfels.
+  bool may_remove_stable = true;
+
+  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. A surfel seen there at the
+  /// depth of `input_depth_m` was fused from a person by mistake: that counts as a violation.
+  cv::Mat person_mask;
+  /// CV_32FC1 (m, 0 = none), size of the mask: the depth before people were taken out.
+  cv::Mat input_depth_m;
+
+  /// Exposure: grey level of the map = gain * grey level of the frame + offset.
+  float gain = 1.0F;
+  float offset = 0.0F;
+};
 
 /// What one frame did to the map.
 struct FusionCounts {
@@ -21,24 +37,28 @@ struct FusionCounts {
 /// Fuses frames into a map. Keeps its work memory between calls. Not thread safe.
 ///
 /// Seen from the surfels, so that each is changed by exactly one pixel and threads never meet: an
-/// active surfel projects to a pixel; if the depth there agrees it moves along the pixel's ray by
-/// the running weighted mean (weights 1 / variance of the sensor) and gains confidence; if the
-/// frame sees well behind it, that is a violation of free space. Pixels that no surfel explains
-/// become new surfels. Seen through too often, or unstable and not supported for long: removed. So
-/// a person who was fused by mistake goes away once the room behind is seen.
+/// active surfel in view projects to a pixel; if the depth there agrees and it does not turn its
+/// back, it moves along the pixel's ray by the running weighted mean (weights 1 / variance of the
+/// sensor) and gains confidence; if the frame sees well behind it, that is a violation of free
+/// space. Pixels that no surfel explains become new surfels. Seen through too often, or unstable
+/// and not supported for long: removed. So a person who was fused by mistake goes away once the
+/// room behind is seen.
 class Fuser {
  public:
+  Fuser();
+  ~Fuser();
+
+  /// Throws InputError when the images of the options do not have the size of the input frame.
   FusionCounts fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
-                    SurfelMap& map);
+                    SurfelMap& map, const FusionOptions& options = {});
 
  private:
-  cv::Mat nearest_m_;                     // smallest depth of 3x3 pixels
-  std::vector<std::uint8_t> explained_;   // per pixel
-  std::vector<std::uint32_t> row_start_;  // first new surfel of each row
-  std::vector<std::uint8_t> doomed_;      // per surfel
-};
+  struct Scratch;
+  void update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
+              const FusionOptions& options, SurfelMap& map, FusionCounts& counts);
+  std::size_t clean(SurfelMap& map);
 
-/// Removes the surfels for which `doomed` (one flag each) is set, keeping the order of the others.
-std::size_t compact(const std::vector<std::uint8_t>& doomed, SurfelArrays& surfels);
+  std::unique_ptr<Scratch> scratch_;
+};
 
 }  // namespace pf

@@ -11,11 +11,15 @@
 
 namespace pf {
 
+/// Surfels by their last support: within MapConfig::active_window_frames, or longer ago.
+enum class SurfelAge { active, inactive, all };
+
 /// Which surfels a view shows.
 struct RenderOptions {
   bool with_color = false;   ///< fill ModelView::color
   bool only_stable = false;  ///< leave out unstable surfels; else they show where nothing stable is
-  bool only_active = true;   ///< leave out those outside the active time window
+  SurfelAge age = SurfelAge::active;
+  double max_depth_m = 0;  ///< blocks that are farther as a whole are left out; 0: none are
 };
 
 /// Splats surfels as discs: each pixel shows, of the discs of the nearest surface that its ray hits
@@ -25,16 +29,15 @@ struct RenderOptions {
 /// buffers keep minima, whatever the order.
 class SurfelRenderer {
  public:
+  SurfelRenderer();
+  ~SurfelRenderer();
+
   void render(const SurfelMap& map, const PinholeCamera& camera,
               const Eigen::Isometry3d& T_map_camera, const RenderOptions& options, ModelView& view);
 
  private:
-  using Buffer = std::atomic<std::uint64_t>[];
-  void clear(std::size_t pixels);
-
-  std::unique_ptr<Buffer> nearest_, chosen_;  // per pixel
-  std::vector<std::uint8_t> shown_;           // per surfel
-  std::size_t buffer_size_ = 0;
+  struct Buffers;
+  std::unique_ptr<Buffers> buffers_;
 };
 
 }  // namespace pf

@@ -1,71 +1,130 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <unordered_map>
 #include <vector>
 
 #include "posefusion/map/config.hpp"
+#include "posefusion/map/surfels.hpp"
 
 namespace pf {
 
-/// Surfels as structure of arrays, in the map frame, in the order in which they were made. One disc
-/// each: position (m), unit normal, mean colour (0..255), radius (m).
-struct SurfelArrays {
-  std::vector<float> x, y, z;
-  std::vector<float> nx, ny, nz;
-  std::vector<float> r, g, b;
-  std::vector<float> radius;
-  std::vector<float> weight;                ///< of the running means; a measurement at 1 m counts 1
-  std::vector<float> confidence;            ///< frames that supported it
-  std::vector<std::int32_t> created, seen;  ///< frame numbers: made, last supported
-  std::vector<std::int32_t> violations;     ///< frames that saw through it, less those that did not
-
-  std::size_t size() const { return x.size(); }
-  /// Calls visit(array) for each array above.
-  template <typename Visit>
-  void forEachArray(const Visit& visit) {
-    for (auto* v : {&x, &y, &z, &nx, &ny, &nz, &r, &g, &b, &radius, &weight, &confidence}) {
-      visit(*v);
-    }
-    for (auto* v : {&created, &seen, &violations}) visit(*v);
-  }
-  static constexpr std::size_t bytesPerSurfel() { return 12 * sizeof(float) + 3 * sizeof(int32_t); }
+/// The surfels that were made in one cube of space. Fusion may move them a little beyond its faces.
+struct SurfelBlock {
+  SurfelArrays surfels;        ///< in the order in which they were made
+  Eigen::AlignedBox3f bounds;  ///< holds all centres (m, map frame)
+  float largest_radius = 0;    ///< m
+  bool any_unstable = false;   ///< false: all are stable
 };
 
-/// The surfels and the frame clock. Has one owner (the mapper); changed by fuse() alone.
+/// The surfels, in blocks, and the frame clock. A frame touches only the blocks in view, so that
+/// its cost does not grow with the map. Has one owner (the mapper); changed by Fuser, add() and
+/// removeIf(). The order of blocks and of surfels in them depends neither on threads nor on
+/// hashing.
 class SurfelMap {
  public:
-  explicit SurfelMap(const MapConfig& config) : config_(config) {}
+  /// Side of a block (m): about 5,000 surfels of a surface seen at 2 m with half resolution. Much
+  /// smaller ones cost more to visit than they save, larger ones reach too far out of view.
+  static constexpr float kBlockSideM = 0.5F;
+
+  explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSideM)
+      : config_(config), block_side_m_(block_side_m) {}
 
   const MapConfig& config() const { return config_; }
-  const SurfelArrays& surfels() const { return surfels_; }
-  SurfelArrays& surfels() { return surfels_; }
 
   /// Number of the last fused frame, from 0; -1 while the map is empty.
   int frame() const { return frame_; }
   void advance() { ++frame_; }
 
-  bool isActive(std::size_t i) const {
-    return frame_ - surfels_.seen[i] <= config_.active_window_frames;
-  }
-  bool isStable(std::size_t i) const {
-    return surfels_.confidence[i] >= static_cast<float>(config_.stable_confidence);
-  }
-  std::size_t capacity() const;
+  /// In the order in which they were made; a block may be empty.
+  const std::deque<SurfelBlock>& blocks() const { return blocks_; }
+  std::size_t size() const;
   std::size_t stableCount() const;
+
+  bool isActive(const SurfelArrays& s, std::size_t i) const {
+    return frame_ - s.seen[i] <= config_.active_window_frames;
+  }
+  bool isStable(const SurfelArrays& s, std::size_t i) const {
+    return s.confidence[i] >= static_cast<float>(config_.stable_confidence);
+  }
+  /// Seen through too often, or unstable and not supported for long: gone for fusion and rendering,
+  /// though its memory may be swept up some frames later.
+  bool isDead(const SurfelArrays& s, std::size_t i) const {
+    if (s.violations[i] > config_.max_violations) return true;
+    return !isStable(s, i) && frame_ - s.seen[i] > config_.max_unstable_age_frames;
+  }
+
+  /// Calls visit(surfels, i) for each surfel, block by block.
+  template <typename Visit>
+  void forEachSurfel(const Visit& visit) const {
+    for (const SurfelBlock& block : blocks_) {
+      for (std::size_t i = 0; i < block.surfels.size(); ++i) visit(block.surfels, i);
+    }
+  }
+
+  /// A copy of all surfels, block by block.
+  SurfelArrays collect() const;
+
+  /// Puts the surfels into their blocks, in their order, as far as memory lasts; the others are
+  /// refused. Positions that are not finite are left out. Returns how many were added.
+  std::size_t add(const SurfelArrays& surfels);
+
+  /// Removes the surfels for which doomed(surfels, i) holds, keeping the order of the others.
+  template <typename Doomed>
+  std::size_t removeIf(const Doomed& doomed) {
+    std::size_t removed = 0;
+    for (SurfelBlock& block : blocks_) removed += removeFrom(block, doomed);
+    countMemory();
+    return removed;
+  }
+
+  /// Memory (bytes) that the blocks hold, used or reserved; never above memory_limit_mb.
+  std::size_t memory() const { return memory_; }
 
   /// Surfels that the memory limit kept out since the last clear().
   std::size_t refused() const { return refused_; }
-  void countRefused(std::size_t n) { refused_ += n; }
 
   void clear();
 
  private:
+  friend class Fuser;
+
+  /// The block around a point, made when it is new; none when there is no memory for it.
+  static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+  std::uint32_t blockAt(float x, float y, float z);
+  /// Reserves memory in a block; returns for how many of `count` more surfels there is room.
+  std::size_t makeRoom(SurfelBlock& block, std::size_t count);
+  /// Sums up the memory anew, after surfels were removed.
+  void countMemory();
+
+  template <typename Doomed>
+  std::size_t removeFrom(SurfelBlock& block, const Doomed& doomed) const;
+  /// Keeps the surfels named (ascending), gives memory back and fits the bounds.
+  void keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& block) const;
+
   MapConfig config_;
-  SurfelArrays surfels_;
+  float block_side_m_;
+  std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
+  std::unordered_map<std::uint64_t, std::uint32_t> index_;  // by packed cell; never iterated
   int frame_ = -1;
+  std::size_t memory_ = 0;
   std::size_t refused_ = 0;
 };
+
+template <typename Doomed>
+std::size_t SurfelMap::removeFrom(SurfelBlock& block, const Doomed& doomed) const {
+  std::vector<std::uint32_t> kept;
+  const std::size_t size = block.surfels.size();
+  kept.reserve(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!doomed(block.surfels, i)) kept.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (kept.size() < size) keepOnly(kept, block);
+  return size - kept.size();
+}
 
 }  // namespace pf

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pf {
+
+/// Surfels as structure of arrays, in the map frame. One disc each: position (m), unit normal, mean
+/// colour (0..255), radius (m).
+struct SurfelArrays {
+  std::vector<float> x, y, z;
+  std::vector<float> nx, ny, nz;
+  std::vector<float> r, g, b;
+  std::vector<float> radius;
+  std::vector<float> weight;                ///< of the running means; a measurement at 1 m counts 1
+  std::vector<float> confidence;            ///< frames that supported it
+  std::vector<std::int32_t> created, seen;  ///< frame numbers: made, last supported
+  std::vector<std::int32_t> violations;     ///< frames that contradict it, less those that support
+
+  std::size_t size() const { return x.size(); }
+
+  /// Calls visit(array) for each array above.
+  template <typename Visit>
+  void forEachArray(const Visit& visit) {
+    for (const auto member : kFloats) visit(this->*member);
+    for (const auto member : kIntegers) visit(this->*member);
+  }
+
+  /// Calls visit(array, array of `other`) for each array above.
+  template <typename Visit>
+  void forEachArray(const SurfelArrays& other, const Visit& visit) {
+    for (const auto member : kFloats) visit(this->*member, other.*member);
+    for (const auto member : kIntegers) visit(this->*member, other.*member);
+  }
+
+  void resize(std::size_t count) {
+    forEachArray([&](auto& array) { array.resize(count); });
+  }
+
+  /// Adds `from`'s surfels named by indices[0 .. count).
+  void append(const SurfelArrays& from, const std::uint32_t* indices, std::size_t count) {
+    forEachArray(from, [&](auto& array, const auto& other) {
+      for (std::size_t i = 0; i < count; ++i) array.push_back(other[indices[i]]);
+    });
+  }
+
+  static constexpr std::size_t bytesPerSurfel() { return 12 * sizeof(float) + 3 * sizeof(int32_t); }
+
+ private:
+  using Floats = std::vector<float> SurfelArrays::*;
+  using Integers = std::vector<std::int32_t> SurfelArrays::*;
+  static constexpr Floats kFloats[] = {
+      &SurfelArrays::x,  &SurfelArrays::y,      &SurfelArrays::z,      &SurfelArrays::nx,
+      &SurfelArrays::ny, &SurfelArrays::nz,     &SurfelArrays::r,      &SurfelArrays::g,
+      &SurfelArrays::b,  &SurfelArrays::radius, &SurfelArrays::weight, &SurfelArrays::confidence};
+  static constexpr Integers kIntegers[] = {&SurfelArrays::created, &SurfelArrays::seen,
+                                           &SurfelArrays::violations};
+};
+
+}  // namespace pf

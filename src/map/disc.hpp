@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace pf {
+
+/// A surfel in the camera frame, with the pixels that its disc may cover.
+struct Disc {
+  float x, y, z, nx, ny, nz;
+  float offset;           ///< n . (x, y, z): the disc's plane
+  float inverse_radius2;  ///< 1 / radius^2
+  std::int16_t first_u, last_u, first_v, last_v;
+  std::uint32_t slot;  ///< of its surfel in its block
+  bool stable;
+};
+
+/// Where a ray meets a disc.
+struct Hit {
+  float depth = 0;     ///< along the optical axis; 0 when the ray misses
+  float distance = 0;  ///< from the disc's centre, as part of its radius, squared
+};
+
+/// `nearest_m`: a depth less than this does not count. The ray is (ray_x, ray_y, 1).
+inline Hit intersect(const Disc& d, float ray_x, float ray_y, float nearest_m) {
+  // A disc seen under a flatter angle than this is drawn as if it faced the camera: the plane
+  // intersection is of no use there.
+  constexpr float kMinCosine = 0.15F;
+  const float cosine = d.nx * ray_x + d.ny * ray_y + d.nz;  // times the length of the ray
+  const bool steep =
+      cosine * cosine < kMinCosine * kMinCosine * (ray_x * ray_x + ray_y * ray_y + 1);
+  const float depth = steep ? d.z : d.offset / cosine;
+  const float dx = ray_x * depth - d.x, dy = ray_y * depth - d.y, dz = depth - d.z;
+  const float distance = (dx * dx + dy * dy + dz * dz) * d.inverse_radius2;
+  if (distance > 1.0F || depth < nearest_m) return {};
+  return {depth, distance};
+}
+
+}  // namespace pf

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "posefusion/frame/working_frame.hpp"
+#include "posefusion/map/fusion.hpp"
+#include "posefusion/map/surfels.hpp"
+
+namespace pf {
+
+/// Makes a surfel of each pixel with depth and normal for which `explained` is 0, row by row.
+/// Reuses the memory of `surfels`; `now` is the number of the frame.
+void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
+                          const FusionOptions& options, int now,
+                          const std::vector<std::uint8_t>& explained, SurfelArrays& surfels);
+
+}  // namespace pf
