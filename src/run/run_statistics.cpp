@@ -20,8 +20,6 @@ double shareOf(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
-bool hasPose(const FrameStatus& status) { return status.outcome == FrameOutcome::fused; }
-
 double FrameCounts::poseShare() const { return shareOf(posed, read); }
 double FrameCounts::sharpPoseShare() const { return shareOf(posed, read - blurred); }
 
@@ -29,7 +27,7 @@ void RunStatistics::add(const ProcessedFrame& frame) {
   ++frames_.read;
   ++frames_.by_state[std::string(name(frame.status.state))];
   ++frames_.by_outcome[std::string(name(frame.status.outcome))];
-  if (hasPose(frame.status)) ++frames_.posed;
+  if (frame.status.located) ++frames_.posed;
   switch (frame.status.outcome) {
     case FrameOutcome::bad_input:
       ++frames_.bad;
