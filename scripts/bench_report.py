@@ -41,8 +41,11 @@ class Report:
 
 
 def write_markdown(path, rows):
+    """The table, below the text that the file begins with (all before its first "Printed by")."""
     cores, machine = os.cpu_count(), platform.machine()
-    lines = [f"Printed by `scripts/bench` on {cores} cores ({machine}).", "",
+    text = path.read_text().split("Printed by")[0].rstrip() if path.exists() else ""
+    lines = [text, ""] if text else []
+    lines += [f"Printed by `scripts/bench` on {cores} cores ({machine}).", "",
              "| what | measured | bar | |", "|---|---|---|---|"]
     marks = {True: "ok", False: "missed", None: ""}
     lines += [f"| {what} | {value} | {bar} | {marks[kept]} |" for what, value, bar, kept in rows]

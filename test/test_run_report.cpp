@@ -30,6 +30,7 @@ ProcessedFrame frameAt(int i, FrameOutcome outcome) {
   input.depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(1000));
   frame.status.stamp_ns = input.stamp_ns;
   frame.status.outcome = outcome;
+  frame.status.located = outcome == FrameOutcome::fused;
   frame.status.T_map_camera.translation().x() = 0.01 * i * i;
   frame.status.tracking_ms = i;
   frame.status.fusion_ms = 1;
@@ -133,7 +134,18 @@ TEST_F(RunReportTest, WithoutTruthThereAreNoErrors) {
   EXPECT_EQ(report.table().find("ATE"), std::string::npos);
 }
 
-TEST_F(RunReportTest, TrajectoryHasTheFusedFramesAlone) {
+TEST_F(RunReportTest, ADoubtfulFrameThatIsLocatedHasAPose) {
+  ProcessedFrame doubtful = frameAt(30, FrameOutcome::disagrees);
+  doubtful.status.state = TrackingState::doubtful;
+  doubtful.status.located = true;
+  report.add(doubtful);
+  EXPECT_EQ(report.trajectory().size(), 30U);
+  EXPECT_EQ(report.statistics().frames().posed, 30U);
+  EXPECT_EQ(report.statistics().frames().tracked, 29U);
+  EXPECT_EQ(summary().at("frames").at("by_state").at("doubtful"), 1);
+}
+
+TEST_F(RunReportTest, TrajectoryHasTheLocatedFramesAlone) {
   report.write(folder.str(), map);
   const Trajectory written = loadTrajectory(folder / "trajectory.txt");
   ASSERT_EQ(written.size(), 29U);

@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -94,6 +95,37 @@ class Scripts(unittest.TestCase):
             self.assertEqual(done.returncode, 1, "a report cut short is a failed test")
 
 
+class Bench(unittest.TestCase):
+    def setUp(self):
+        sys.path.insert(0, str(ROOT / "scripts"))
+        self.addCleanup(sys.path.remove, str(ROOT / "scripts"))
+
+    def test_a_sequence_is_made_again_only_for_its_own_scenario_and_arguments(self):
+        from bench_runs import fingerprint
+        self.assertEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["a"]))
+        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["b"]))
+        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("loop_room", ["a"]))
+
+    def test_the_table_keeps_the_text_before_it(self):
+        from bench_report import write_markdown
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "b.md")
+            path.write_text("# Head\n\nPrinted by long ago\n| old |\n")
+            for what in ("one", "two"):
+                write_markdown(path, [(what, "1 m", "<= 2", True)])
+            text = path.read_text()
+            self.assertTrue(text.startswith("# Head\n\nPrinted by `scripts/bench`"), text)
+            self.assertIn("| two | 1 m | <= 2 | ok |", text)
+            self.assertNotIn("old", text)
+            self.assertNotIn("one", text)
+
+    def test_unknown_parts_are_refused(self):
+        done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],
+                              stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no part is called wlak", done.stderr)
+
+
 class MakeSequence(unittest.TestCase):
     def make(self, folder, *options):
         program = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / "posefusion_make_sequence"
@@ -168,7 +200,7 @@ class Repository(unittest.TestCase):
         self.assertGreater(found, 30)
 
     def test_options_in_readme_exist(self):
-        known = (ROOT / "scripts" / "test").read_text()
+        known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench"))
         for program in ("run", "evaluate", "simulate"):
             path = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / f"posefusion_{program}"
             known += subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, text=True).stdout

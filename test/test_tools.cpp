@@ -118,6 +118,42 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_LT(check.at("depth").at("median_abs_difference_m").get<double>(), 0.02);
 }
 
+TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
+  const std::string out = own / "out", status = own / "status.csv";
+  ASSERT_EQ(run({sequence(), "--detector", "recorded", "--output", out, "--save-status", status}),
+            0)
+      << said;
+  ASSERT_EQ(run({sequence(), out, "--json", "--plan", own / "plan.png"}, "posefusion_evaluate"), 0)
+      << said;
+  auto track = nlohmann::json::parse(said);
+  EXPECT_EQ(track.at("coverage").at("frames"), kFrames);
+  EXPECT_EQ(track.at("coverage").at("share"), 1.0);
+  EXPECT_EQ(track.at("coverage").at("share_of_passed"), 1.0);
+  EXPECT_EQ(track.at("wrong_poses"), 0);
+  EXPECT_EQ(track.at("wrong_poses"), summaryOf(out).at("wrong_poses"));
+  EXPECT_NEAR(track.at("ate_held_m").at("rmse").get<double>(),
+              summaryOf(out).at("ate_held_rmse_m").get<double>(), 1e-6);
+  EXPECT_GT(fs::file_size(own / "plan.png"), 10'000U);
+
+  // Half of the poses taken away, and a jump in what is left.
+  Trajectory half = loadTrajectory(out + "/trajectory.txt");
+  half.resize(kFrames / 2);
+  half.back().T_world_camera.translation().x() += 1.0;
+  saveTrajectory(own / "half.txt", half, "");
+  ASSERT_EQ(run({sequence(), own / "half.txt", "--json"}, "posefusion_evaluate"), 0) << said;
+  track = nlohmann::json::parse(said);
+  EXPECT_EQ(track.at("coverage").at("share"), 0.5);
+  EXPECT_FALSE(track.at("coverage").contains("share_of_passed")) << "no summary beside it";
+  EXPECT_EQ(track.at("wrong_poses"), 1);
+
+  ASSERT_EQ(run({"covariance", sequence(), status, "--json"}, "posefusion_evaluate"), 0) << said;
+  EXPECT_EQ(nlohmann::json::parse(said).at("motions"), kFrames - 1);
+  EXPECT_EQ(run({"covariance", sequence(), out + "/trajectory.txt"}, "posefusion_evaluate"), 1);
+  EXPECT_TRUE(hasSaid("is no table of posefusion_run --save-status")) << said;
+  EXPECT_EQ(run({own.str(), out}, "posefusion_evaluate"), 1);
+  EXPECT_TRUE(hasSaid("has no groundtruth.txt")) << said;
+}
+
 TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
   const std::string file =
       own.write("c.yaml", "tracking: {max_depth_m: 3.5}\nblur: {threshold: 7}");

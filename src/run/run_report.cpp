@@ -56,7 +56,7 @@ void RunReport::add(const ProcessedFrame& frame) {
   if (frame.status.outcome != FrameOutcome::bad_input) {
     frames_ns_.push_back(frame.status.stamp_ns);
   }
-  if (!hasPose(frame.status)) return;
+  if (!frame.status.located) return;
   camera_ = frame.seen.frame.camera;
   trajectory_.push_back({frame.status.stamp_ns, frame.status.T_map_camera});
 }

@@ -29,7 +29,7 @@ void RunStatistics::add(const ProcessedFrame& frame) {
   ++frames_.read;
   ++frames_.by_state[std::string(name(frame.status.state))];
   ++frames_.by_outcome[std::string(name(frame.status.outcome))];
-  if (hasPose(frame.status)) ++frames_.posed;
+  if (frame.status.located) ++frames_.posed;
   switch (frame.status.outcome) {
     case FrameOutcome::bad_input:
       ++frames_.bad;

@@ -136,7 +136,8 @@ void printTable(const Answer& a, bool with_scale) {
       "wrong poses              %zu (motion over a second off by more than 0.10 m or 5 deg)\n",
       a.wrong.size());
   std::printf(
-      "false poses              %zu (more than 0.10 m off, aligned at the start); worst %.3f m\n",
+      "false poses              %zu (more than 0.10 m off, aligned before the fall or at the "
+      "start); worst %.3f m\n",
       a.places.false_count, a.places.worst_m);
   std::printf("last pose                %.4f m\n", a.last_m);
 }

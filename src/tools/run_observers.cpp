@@ -5,7 +5,6 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/people_json.hpp"
-#include "posefusion/run/run_statistics.hpp"
 
 namespace pf {
 namespace {
@@ -33,12 +32,12 @@ void StatusWriter::add(const ProcessedFrame& frame) {
   const FrameStatus& status = frame.status;
   StatusRow row;
   row.stamp_ns = status.stamp_ns;
-  row.has_pose = hasPose(status);
+  row.has_pose = status.located;
   row.state = name(status.state);
   row.outcome = name(status.outcome);
   row.reason = reasonOf(status);
   row.T_map_camera = status.T_map_camera;
-  if (row.has_pose) row.covariance = status.tracking.covariance;
+  if (status.outcome == FrameOutcome::fused) row.covariance = status.tracking.covariance;
   rows_.push_back(std::move(row));
 }
 

@@ -26,13 +26,13 @@ struct CovarianceShare {
   double median_sigmas = 0;      ///< median of the largest of the six |error| / sigma
 };
 
-/// Looks at the motion from each pose to the next. Its error, the twist of (Q_i^-1 Q_j)^-1
-/// (P_i^-1 P_j) with truth Q and estimate P, is held against the covariance reported with the later
-/// pose j; that of the earlier one is not added, so an honest covariance of single, independent
-/// poses would be found too small by a factor of sqrt(2). The truth is that nearest in time, less
-/// than 0.02 s away; motions without, and those longer than half a second, are left out. An
-/// ellipsoid without extent (a covariance of 0) holds nothing but an error of 0. All 0 of no
-/// motion.
+/// Looks at the motion from each pose to the next (of the fused frames of a run). Its error, the
+/// twist of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) with truth Q and estimate P, is held against the
+/// covariance reported with the later pose j; that of the earlier one is not added, so an honest
+/// covariance of single, independent poses would be found too small by a factor of sqrt(2). The
+/// truth is that nearest in time, less than 0.02 s away; motions without, and those longer than
+/// half a second, are left out. An ellipsoid without extent (a covariance of 0) holds nothing but
+/// an error of 0. All 0 of no motion.
 CovarianceShare checkCovariances(const Trajectory& truth, const std::vector<UncertainPose>& poses);
 
 }  // namespace pf

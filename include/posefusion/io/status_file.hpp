@@ -17,7 +17,8 @@ struct StatusRow {
   std::string outcome;    ///< fused, or why not: blurred, few_inliers, ...
   std::string reason;     ///< the same in words; may be empty
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
+  /// Of the twist (m, rad) in the camera frame, of a fused frame; 0 of others.
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 /// Writes a table with one row for each frame, comma-separated with a line of names: stamp,

@@ -9,9 +9,6 @@
 
 namespace pf {
 
-/// Whether the frame's pose is its own: otherwise it is the last one before it.
-bool hasPose(const FrameStatus& status);
-
 /// Frames of a run. Each is counted once besides `read`.
 struct FrameCounts {
   std::size_t read = 0;     ///< all frames that the input gave
@@ -19,7 +16,7 @@ struct FrameCounts {
   std::size_t blurred = 0;  ///< dropped by the gate
   std::size_t tracked = 0;  ///< tracked and fused
   std::size_t lost = 0;     ///< offered to tracking and not fused
-  std::size_t posed = 0;    ///< with a pose of their own
+  std::size_t posed = 0;    ///< located: tracked, or doubtful with a pose of their own
   std::map<std::string, std::size_t> by_state, by_outcome;  ///< of all that were read, by name
 
   double poseShare() const;       ///< posed / read; 0 of none
