@@ -125,6 +125,7 @@ void Mapper::State::fuse(const Eigen::Isometry3d& T) {
   T_map_camera = T;
   fuser.fuse(frame, T, map);
   renderer.render(map, frame.camera, T, RenderOptions{}, view);
+  view.stamp_ns = last_stamp_ns;
   model.assign(view);
   const FrameLevel& coarse = frame.levels[kLevels - 1];
   coarse.intensity.copyTo(previous.intensity);
