@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's terms cut a small cloud as PCL's MinCutSegmentation does.
+// The paper's energy cuts an organised cloud as PCL's MinCutSegmentation does.
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/min_cut_segmentation.h>
@@ -8,121 +8,103 @@
 
 #include <algorithm>
 #include <random>
-#include <set>
 #include <vector>
 
-#include "posefusion/segmentation/energy.hpp"
 #include "posefusion/segmentation/graph_cut.hpp"
+#include "posefusion/segmentation/paper_cut.hpp"
 
 namespace pf {
 namespace {
 
-constexpr float kSigma = 0.25F;
-constexpr float kRadius = 0.20F;
-constexpr int kNeighbours = 14;
+/// A rough figure before a wall, seen by a camera of 40 x 30 pixels; some pixels have no depth.
+struct Cloud {
+  SceneGrid grid;
+  std::vector<Eigen::Vector3f> seeds;
 
-/// A ball of points before a sparse wall.
-std::vector<Eigen::Vector3f> makeCloud(unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<float> ball(0.0F, 0.08F);
-  std::uniform_real_distribution<float> wall(-1.0F, 1.0F);
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 150; ++i)
-    points.emplace_back(ball(random), ball(random), 1.5F + ball(random));
-  for (int i = 0; i < 250; ++i) {
-    points.emplace_back(wall(random), wall(random), 2.5F + 0.05F * wall(random));
-  }
-  return points;
-}
-
-struct PclCut {
-  std::vector<bool> person;
-  double max_flow = 0;  ///< the cost of the cheapest cut
-};
-
-PclCut cutByPcl(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& seed) {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  for (const auto& p : points) cloud->emplace_back(p.x(), p.y(), p.z());
-  pcl::PointCloud<pcl::PointXYZ>::Ptr seeds(new pcl::PointCloud<pcl::PointXYZ>);
-  seeds->emplace_back(seed.x(), seed.y(), seed.z());
-  pcl::MinCutSegmentation<pcl::PointXYZ> segmentation;
-  segmentation.setInputCloud(cloud);
-  segmentation.setForegroundPoints(seeds);
-  segmentation.setSigma(kSigma);
-  segmentation.setRadius(kRadius);
-  segmentation.setNumberOfNeighbours(kNeighbours);
-  segmentation.setSourceWeight(0.8);
-  std::vector<pcl::PointIndices> clusters;
-  segmentation.extract(clusters);
-  PclCut result{std::vector<bool>(points.size(), false), segmentation.getMaxFlow()};
-  for (const int i : clusters.at(1).indices) result.person[i] = true;
-  return result;
-}
-
-struct OurCut {
-  std::vector<bool> person;
-  double cost = 0;  ///< of this labelling, by PCL's weights
-};
-
-OurCut cutByUs(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& seed) {
-  GraphCut graph;
-  const int count = static_cast<int>(points.size());
-  graph.begin(count, count * kNeighbours);
-  for (const auto& p : points) {
-    const float unary = (p - seed).norm() < 1e-6F
-                            ? kCertain
-                            : paperUnary(p, {seed}, Eigen::Vector3f::UnitZ(), kRadius);
-    graph.addNode(std::max(0.0F, unary), std::max(0.0F, -unary));
-  }
-  // PCL's edges lead from a point to its neighbours only.
-  std::set<std::pair<int, int>> edges;
-  for (int i = 0; i < count; ++i) {
-    std::vector<int> order(count);
-    for (int j = 0; j < count; ++j) order[j] = j;
-    const auto nearer = [&](int a, int b) {
-      return (points[a] - points[i]).squaredNorm() < (points[b] - points[i]).squaredNorm();
-    };
-    std::partial_sort(order.begin(), order.begin() + kNeighbours, order.end(), nearer);
-    for (int k = 1; k < kNeighbours; ++k) {
-      edges.insert({i, order[k]});
-    }
-  }
-  for (const auto& [a, b] : edges) {
-    graph.addEdge(a, b, smoothnessCost((points[a] - points[b]).norm(), kSigma), 0.0F);
-  }
-  graph.solve();
-  OurCut result{std::vector<bool>(count), 0};
-  for (int i = 0; i < count; ++i) {
-    result.person[i] = graph.isPerson(i);
-    const double penalty = (points[i] - seed).head<2>().norm() / kRadius;
-    result.cost += result.person[i] ? penalty : 0.8;
-  }
-  for (const auto& [a, b] : edges) {
-    if (result.person[a] && !result.person[b]) {
-      result.cost += smoothnessCost((points[a] - points[b]).norm(), kSigma);
-    }
-  }
-  return result;
-}
-
-TEST(MinCut, AgreesWithPcl) {
-  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
-    const auto points = makeCloud(seed);
-    const PclCut theirs = cutByPcl(points, points.front());
-    const OurCut ours = cutByUs(points, points.front());
-    // The cost of our cut is the maximum flow that PCL finds: both are the cheapest cut.
-    EXPECT_NEAR(ours.cost, theirs.max_flow, 0.005 * theirs.max_flow) << seed;
-    // PCL reports only those points of the person's side whose own link is not used up.
-    int people = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      people += theirs.person[i];
-      if (theirs.person[i]) {
-        EXPECT_TRUE(ours.person[i]) << seed << " " << i;
+  explicit Cloud(unsigned random_seed, int people = 1) {
+    std::mt19937 random(random_seed);
+    std::normal_distribution<float> noise_m(0.0F, 0.01F);
+    std::bernoulli_distribution hole(0.05);
+    const PinholeCamera camera{40, 30, 33, 33, 19.5, 14.5, {}};
+    RgbdFrame frame{1, cv::Mat(30, 40, CV_8UC3, cv::Scalar(0, 0, 0)), cv::Mat(30, 40, CV_32FC1),
+                    1e-3, camera};
+    People detected;
+    for (int v = 0; v < 30; ++v) {
+      for (int u = 0; u < 40; ++u) {
+        const bool figure =
+            (std::abs(u - 14) < 4 && v > 4) || (people > 1 && std::abs(u - 30) < 3 && v > 8);
+        frame.depth.at<float>(v, u) =
+            hole(random) ? 0.0F : (figure ? 1.6F : 2.8F) + noise_m(random);
       }
     }
-    EXPECT_GT(people, 50) << seed;
-    EXPECT_LT(std::count(ours.person.begin(), ours.person.end(), true), 300) << seed;
+    const auto detect = [&](float u, float v) {
+      Person person;
+      for (int i = 0; i < 6; ++i) person.joints[i] = {u, v + 3.5F * i, 0.9F};
+      detected.people.push_back(person);
+    };
+    detect(14, 7);
+    if (people > 1) detect(30, 11);
+    sampleGrid(frame, frame.depth, 40, grid);
+    seeds = liftJoints(detected, grid);
   }
+};
+
+struct PclCut {
+  std::vector<int> person;  ///< cells
+  double cost = 0;          ///< of the cheapest cut
+};
+
+PclCut cutByPcl(const Cloud& cloud) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points(new pcl::PointCloud<pcl::PointXYZ>);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr seeds(new pcl::PointCloud<pcl::PointXYZ>);
+  std::vector<int> cells;
+  for (int cell = 0; cell < cloud.grid.size(); ++cell) {
+    if (!cloud.grid.hasDepth(cell)) continue;
+    cells.push_back(cell);
+    const Eigen::Vector3f p = cloud.grid.point(cell);
+    points->emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const Eigen::Vector3f& p : cloud.seeds) seeds->emplace_back(p.x(), p.y(), p.z());
+  const PaperTerms terms;
+  pcl::MinCutSegmentation<pcl::PointXYZ> segmentation;
+  segmentation.setInputCloud(points);
+  segmentation.setForegroundPoints(seeds);
+  segmentation.setSigma(terms.sigma_m);
+  segmentation.setRadius(terms.radius_m);
+  segmentation.setNumberOfNeighbours(terms.neighbours);
+  segmentation.setSourceWeight(terms.foreground_weight);
+  std::vector<pcl::PointIndices> clusters;
+  segmentation.extract(clusters);
+  PclCut result;
+  for (const int i : clusters.at(1).indices) result.person.push_back(cells[i]);
+  result.cost = segmentation.getMaxFlow();
+  return result;
+}
+
+TEST(PaperCut, AgreesWithPcl) {
+  for (const int people : {1, 2}) {
+    for (const unsigned random_seed : {1U, 2U, 3U}) {
+      const Cloud cloud(random_seed, people);
+      ASSERT_GE(cloud.seeds.size(), 1U);
+      const PclCut theirs = cutByPcl(cloud);
+      std::vector<std::uint8_t> labels;
+      const double cost = PaperCutter().cut(cloud.grid, cloud.seeds, PaperTerms(), labels);
+      // Weights are rounded to 1/256.
+      EXPECT_NEAR(cost, theirs.cost, 0.002 * theirs.cost) << random_seed;
+      // PCL reports only those points of the person's side whose own link is not used up.
+      EXPECT_GT(theirs.person.size(), 10U) << random_seed;
+      for (const int cell : theirs.person) EXPECT_EQ(labels[cell], 1) << random_seed << " " << cell;
+      const auto ours = std::count(labels.begin(), labels.end(), 1);
+      EXPECT_LT(ours, cloud.grid.size() / 2) << random_seed;
+    }
+  }
+}
+
+TEST(PaperCut, NothingWithoutSeeds) {
+  const Cloud cloud(1);
+  std::vector<std::uint8_t> labels;
+  EXPECT_EQ(PaperCutter().cut(cloud.grid, {}, PaperTerms(), labels), 0.0);
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), 1), 0);
 }
 
 TEST(MinCut, IsTheCheapestOfAllLabellings) {
@@ -144,7 +126,7 @@ TEST(MinCut, IsTheCheapestOfAllLabellings) {
         graph.addEdge(i, j, edge[i][j]);
       }
     }
-    graph.solve();
+    const double flow = graph.solve();
     const auto cost = [&](unsigned labels) {
       float sum = 0;
       for (int i = 0; i < kNodes; ++i) {
@@ -160,16 +142,17 @@ TEST(MinCut, IsTheCheapestOfAllLabellings) {
     for (int i = 0; i < kNodes; ++i) ours |= static_cast<unsigned>(graph.isPerson(i)) << i;
     for (unsigned labels = 0; labels < 1U << kNodes; ++labels) best = std::min(best, cost(labels));
     EXPECT_LE(cost(ours), best + 0.1F) << trial;  // weights are rounded to 1/256
+    EXPECT_NEAR(flow, best, 0.1) << trial;
   }
 }
 
 TEST(PaperTerms, AreThoseOfThePaper) {
   EXPECT_FLOAT_EQ(smoothnessCost(0.25F, 0.25F), std::exp(-1.0F));
   const Eigen::Vector3f joint(0, 0, 2), up = Eigen::Vector3f::UnitZ();
-  // P = horizontal distance / r against the constant 0.8; height does not count.
-  EXPECT_NEAR(paperUnary({0.3F, 0.4F, 2}, {joint}, up, 0.2F), 0.8 - 0.5 / 0.2, 1e-5);
-  EXPECT_NEAR(paperUnary({0.3F, 0.4F, 9}, {joint}, up, 0.2F), 0.8 - 0.5 / 0.2, 1e-5);
-  EXPECT_NEAR(paperUnary({0.3F, 7, 2}, {joint}, Eigen::Vector3f::UnitY(), 0.2F), 0.8 - 1.5, 1e-5);
+  // P = horizontal distance / r; height does not count.
+  EXPECT_NEAR(backgroundPenalty({0.3F, 0.4F, 2}, {joint}, up, 0.2F), 0.5 / 0.2, 1e-5);
+  EXPECT_NEAR(backgroundPenalty({0.3F, 0.4F, 9}, {joint}, up, 0.2F), 0.5 / 0.2, 1e-5);
+  EXPECT_NEAR(backgroundPenalty({0.3F, 7, 2}, {joint}, Eigen::Vector3f::UnitY(), 0.2F), 1.5, 1e-5);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/pose/detector.hpp"
+#include "posefusion/segmentation/background.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion/segmentation/upsample.hpp"
 #include "test_data.hpp"
@@ -55,6 +56,17 @@ struct Scene {
     people = {1, true, {person}};
   }
 };
+
+/// A body is no board: it is round.
+void makeRound(Scene& scene, int centre_u) {
+  for (int v = 0; v < 480; ++v) {
+    for (int u = 0; u < 640; ++u) {
+      if (scene.truth.at<std::uint8_t>(v, u) == 0) continue;
+      const float aside = static_cast<float>(u - centre_u) / 55.0F;
+      scene.frame.depth.at<float>(v, u) += 0.15F * aside * aside;
+    }
+  }
+}
 
 double iou(const cv::Mat& a, const cv::Mat& b) {
   return static_cast<double>(cv::countNonZero(a & b)) / std::max(1, cv::countNonZero(a | b));
@@ -185,6 +197,116 @@ TEST(Segmenter, WhatTheMapHasIsNobody) {
   mapped.room.depth_m = mapped.frame.depth;
   EXPECT_GT(iou(segmenter.segment(mapped.frame, mapped.people, &mapped.room).mask, mapped.truth),
             0.85);
+}
+
+TEST(Segmenter, TellsWhereTheMapHoldsAPerson) {
+  // Somebody stood still, was missed and mapped; behind is the wall, or nothing within reach.
+  for (const float wall_z : {3.0F, 0.0F}) {
+    Scene scene(2.0F, 320, wall_z);
+    makeRound(scene, 320);
+    scene.room.depth_m = scene.frame.depth;
+    const Segmentation result = Chain().segment(scene.frame, scene.people, &scene.room);
+    ASSERT_FALSE(result.in_map_mask.empty()) << wall_z;
+    EXPECT_EQ(result.in_map_mask.type(), CV_8UC1);
+    EXPECT_GT(iou(result.in_map_mask, scene.truth), 0.8) << wall_z;
+    EXPECT_EQ(cv::countNonZero(result.in_map_mask & ~result.mask), 0);
+  }
+  // Surfaces of a few frames only.
+  Scene young;
+  makeRound(young, 320);
+  young.room.depth_m = young.frame.depth;
+  young.room.stable = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
+  const Segmentation result = Chain().segment(young.frame, young.people, &young.room);
+  EXPECT_GT(iou(result.in_map_mask, young.truth), 0.8);
+}
+
+TEST(Segmenter, NothingOfTheMapIsAPersonsWithoutASureDetection) {
+  Scene scene;
+  EXPECT_TRUE(Chain().segment(scene.frame, scene.people, nullptr).in_map_mask.empty());
+  EXPECT_TRUE(Chain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+  scene.room.depth_m = scene.frame.depth;
+  scene.people.people[0].score = 0.45F;
+  EXPECT_TRUE(Chain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+  scene.people.people.clear();
+  EXPECT_TRUE(Chain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+}
+
+TEST(Segmenter, WithoutAMapFurnitureIsNotMaskedForLong) {
+  // A person is known; then the map's owner is lost and the camera looks at a cupboard.
+  Chain segmenter;
+  Scene scene;
+  segmenter.segment(scene.frame, scene.people, &scene.room);
+  Scene cupboard;
+  cv::Mat front = cv::Mat::zeros(480, 640, CV_8UC1);
+  cv::rectangle(front, {200, 100}, {440, 479}, cv::Scalar(255), cv::FILLED);
+  cupboard.frame.depth = cupboard.room.depth_m.clone();
+  cupboard.frame.depth.setTo(2.0F, front);
+  cupboard.frame.color.setTo(cv::Scalar(200, 190, 170));
+  cupboard.frame.color.setTo(cv::Scalar(140, 110, 60), front);
+  int masked_frames = 0;
+  for (int i = 0; i < 30; ++i) {
+    cupboard.frame.stamp_ns = 2 + i;
+    const Segmentation result =
+        segmenter.segment(cupboard.frame, {cupboard.frame.stamp_ns, false, {}}, nullptr);
+    masked_frames += !result.mask.empty() && cv::countNonZero(result.mask) > 0;
+  }
+  EXPECT_LE(masked_frames, 10);
+}
+
+TEST(Segmenter, WithoutAMapNobodyIsSeenWhereNobodyWas) {
+  Chain segmenter;
+  Scene scene;
+  scene.frame.depth.setTo(1.5F);  // as a table before the lens
+  for (int i = 0; i < 3; ++i) {
+    scene.frame.stamp_ns = 1 + i;
+    const Segmentation result = segmenter.segment(scene.frame, {1 + i, true, {}}, nullptr);
+    EXPECT_TRUE(result.mask.empty());
+    EXPECT_EQ(result.static_depth.data, scene.frame.depth.data);
+  }
+}
+
+TEST(Segmenter, ThePapersEnergyKnowsDetectedJointsOnly) {
+  SegmentationConfig config;
+  config.energy = "paper";
+  Chain segmenter(config);
+  Scene scene;
+  EXPECT_FALSE(segmenter.segment(scene.frame, scene.people, &scene.room).mask.empty());
+  scene.frame.stamp_ns = 2;
+  EXPECT_TRUE(segmenter.segment(scene.frame, {2, false, {}}, &scene.room).mask.empty());
+}
+
+TEST(MotionPredictor, StartsFromTheViewsOwnStamp) {
+  // The camera moves steadily; the views come some frames late, now and then one is missing.
+  const auto poseAt = [](std::int64_t frame) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() =
+        Eigen::AngleAxisd(0.02 * static_cast<double>(frame), Eigen::Vector3d::UnitY()).matrix();
+    T.translation() = T.linear() * Eigen::Vector3d(0.3, 0, 0);  // about a fixed centre
+    return T;
+  };
+  constexpr std::int64_t kPeriod_ns = 33333333;
+  for (const int late : {1, 2, 3}) {
+    MotionPredictor predictor;
+    for (std::int64_t frame = 10; frame < 30; ++frame) {
+      const std::int64_t seen = (frame % 7 == 0 ? frame - 1 : frame) - late;
+      ModelView view;
+      view.stamp_ns = seen * kPeriod_ns;
+      view.T_map_camera = poseAt(seen);
+      const Eigen::Isometry3d T = predictor.predict(view, frame * kPeriod_ns);
+      if (frame < 12) continue;
+      const Eigen::Isometry3d truth = poseAt(seen).inverse() * poseAt(frame);
+      EXPECT_LT((T.matrix() - truth.matrix()).norm(), 2e-3) << late << " " << frame;
+    }
+  }
+}
+
+TEST(MotionPredictor, KeepsThePoseWhereNoMotionIsKnown) {
+  MotionPredictor predictor;
+  ModelView view;
+  view.stamp_ns = 5;
+  view.T_map_camera.translation() = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(predictor.predict(view, 6).isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(predictor.predict(view, 7).isApprox(Eigen::Isometry3d::Identity()));
 }
 
 TEST(Segmenter, PeopleCoverMostOfTheView) {

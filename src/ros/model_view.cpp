@@ -37,6 +37,7 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
   auto message = boost::make_shared<ModelViewMsg>();
   message->header = header;
   if (view.empty()) return message;
+  message->rendered_at = toTime(view.stamp_ns);
   message->camera = toCameraInfo(view.camera, header);
   Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
   copyPlane(view.depth_m, header, message->depth);
@@ -51,6 +52,7 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
 pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
   pf::ModelView view;
   if (message->depth.data.empty()) return view;
+  view.stamp_ns = toNs(message->rendered_at);
   view.camera = toCamera(message->camera, false);
   view.T_map_camera.matrix().topRows<3>() =
       Eigen::Map<const RowMajor34>(message->map_from_camera.data());

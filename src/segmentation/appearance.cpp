@@ -7,13 +7,15 @@
 namespace pf {
 namespace {
 
+constexpr int kBinsPerAxis = 8;
+
 /// One pass of the kernel (1 2 1) / 4 along the axis with the given stride, the border repeated.
 void smoothAxis(std::array<float, ColourHistogram::kBins>& count, int stride) {
   const auto source = count;
   for (int bin = 0; bin < ColourHistogram::kBins; ++bin) {
-    const int coordinate = bin / stride % 8;
+    const int coordinate = bin / stride % kBinsPerAxis;
     const int below = coordinate > 0 ? bin - stride : bin;
-    const int above = coordinate < 7 ? bin + stride : bin;
+    const int above = coordinate < kBinsPerAxis - 1 ? bin + stride : bin;
     count[bin] = 0.25F * source[below] + 0.5F * source[bin] + 0.25F * source[above];
   }
 }
@@ -32,7 +34,7 @@ void ColourHistogram::add(int bin, float weight) {
 
 void ColourHistogram::smoothAndNormalise() {
   if (total_ <= 0.0F) return;
-  for (int stride : {1, 8, 64}) smoothAxis(count_, stride);
+  for (int stride : {1, kBinsPerAxis, kBinsPerAxis * kBinsPerAxis}) smoothAxis(count_, stride);
   for (float& value : count_) value /= total_;
 }
 

@@ -9,9 +9,18 @@
 namespace pf {
 namespace {
 
+constexpr float kMinDepth_m = 0.1F;  // nearer points of a view do not count
+constexpr int kMinKnown = 4;      // of the 9 pixels looked at, for a verdict other than agreement
+constexpr float kClearly = 2.0F;  // tolerances between surfaces that are surely not the same
+constexpr std::size_t kRowsAtOnce = 8;
+constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is predicted from
+
 /// Difference of depth that noise, the map's error and the pose's explain, metres: the noise of
 /// structured light grows with the square of the depth.
-float depthTolerance(float z) { return 0.02F + 0.006F * z * z; }
+float depthTolerance(float z_m) {
+  constexpr float kConstant_m = 0.02F, kPerDepth2 = 0.006F;  // the latter in 1/m
+  return kConstant_m + kPerDepth2 * z_m * z_m;
+}
 
 /// A rigid motion and a projection in floats.
 struct Projection {
@@ -20,10 +29,12 @@ struct Projection {
   float fx, fy, cx, cy;
 };
 
-Background judge(const ModelView& view, const Projection& projection, const Eigen::Vector3f& point,
-                 int reach_px) {
+/// Looks for a point of the grid's camera among the 3x3 pixels, `reach_px` apart, around its place
+/// in the view.
+Background comparePoint(const ModelView& view, const Projection& projection,
+                        const Eigen::Vector3f& point, int reach_px) {
   const Eigen::Vector3f q = projection.rotation * point + projection.translation;
-  if (q.z() <= 0.1F) return Background::unknown;
+  if (q.z() <= kMinDepth_m) return Background::unknown;
   const int u = static_cast<int>(std::lround(projection.fx * q.x() / q.z() + projection.cx));
   const int v = static_cast<int>(std::lround(projection.fy * q.y() / q.z() + projection.cy));
   const cv::Mat& depth_m = view.depth_m;
@@ -45,13 +56,13 @@ Background judge(const ModelView& view, const Projection& projection, const Eige
         }
         recent = true;
       }
-      behind += model > q.z() + 2.0F * tolerance;
-      before += model < q.z() - 2.0F * tolerance;
+      behind += model > q.z() + kClearly * tolerance;
+      before += model < q.z() - kClearly * tolerance;
     }
   }
   if (recent) return Background::recent;
-  if (known >= 4 && behind == known) return Background::nearer;
-  if (known >= 4 && before == known) return Background::farther;
+  if (known >= kMinKnown && behind == known) return Background::nearer;
+  if (known >= kMinKnown && before == known) return Background::farther;
   return Background::unknown;
 }
 
@@ -67,30 +78,30 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
       static_cast<float>(camera.cx),        static_cast<float>(camera.cy)};
   const int reach_px =
       std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.width) / grid.cols)));
-  parallelFor(grid.rows, 8, [&](std::size_t begin, std::size_t end) {
+  parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     const int last = static_cast<int>(end) * grid.cols;
     for (int cell = static_cast<int>(begin) * grid.cols; cell < last; ++cell) {
       if (!grid.hasDepth(cell)) continue;
-      result[cell] = judge(view, projection, {grid.x[cell], grid.y[cell], grid.z[cell]}, reach_px);
+      result[cell] = comparePoint(view, projection, grid.point(cell), reach_px);
     }
   });
 }
 
 Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t stamp_ns) {
-  Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
-  const double last_step = static_cast<double>(view_stamp_ns_ - other_stamp_ns_);
-  const double next_step = static_cast<double>(stamp_ns - view_stamp_ns_);
-  if (frames_ >= 2 && last_step > 0 && next_step > 0 && next_step < 4 * last_step) {
-    const Eigen::Isometry3d T_other_view = T_map_other_.inverse() * view.T_map_camera;
-    const double factor = std::min(next_step / last_step, 2.0);
-    const Eigen::AngleAxisd turn(T_other_view.linear());
-    T_view_camera.linear() = Eigen::AngleAxisd(turn.angle() * factor, turn.axis()).matrix();
-    T_view_camera.translation() = factor * T_other_view.translation();
+  if (frames_ == 0 || view.stamp_ns != newest_.stamp_ns) {
+    before_ = newest_;
+    newest_ = {view.stamp_ns, view.T_map_camera};
+    ++frames_;
   }
-  T_map_other_ = view.T_map_camera;
-  other_stamp_ns_ = view_stamp_ns_;
-  view_stamp_ns_ = stamp_ns;
-  ++frames_;
+  Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
+  const double last_step = static_cast<double>(newest_.stamp_ns - before_.stamp_ns);
+  const double next_step = static_cast<double>(stamp_ns - newest_.stamp_ns);
+  if (frames_ < 2 || last_step <= 0.0 || next_step <= 0.0) return T_view_camera;
+  const Eigen::Isometry3d T_before_view = before_.T_map_camera.inverse() * newest_.T_map_camera;
+  const double steps = std::min(next_step / last_step, kMaxSteps);
+  const Eigen::AngleAxisd turn(T_before_view.linear());
+  T_view_camera.linear() = Eigen::AngleAxisd(turn.angle() * steps, turn.axis()).matrix();
+  T_view_camera.translation() = steps * T_before_view.translation();
   return T_view_camera;
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/parallel.hpp"
-
 namespace pf {
 namespace {
 
 constexpr float kSampleSpacing_m = 0.07F;
+constexpr int kMaxPartsOfLimb = 20;
+constexpr int kMedianReach = 1;             // cells: 3x3, about 9x9 pixels of 640
 constexpr float kMaxDepthSpread_m = 0.30F;  // of one person's seeds around their median
+constexpr float kMaxOffMedian_m = 0.10F;    // of a seed's own depth from that around it
 constexpr float kTorsoRadius_m = 0.175F;
 constexpr float kHeadRadius_m = 0.12F;
 constexpr float kLegRadius_m = 0.105F;
@@ -75,8 +76,7 @@ struct Sample {
 Sample sampleAt(const SceneGrid& grid, float u, float v) {
   const int cell = grid.cellAt(u, v);
   if (cell < 0) return {};
-  // 9 x 9 pixels of 640: three cells.
-  return {cell, medianDepth(grid, cell, 1)};
+  return {cell, medianDepth(grid, cell, kMedianReach)};
 }
 
 float medianOf(const std::vector<Sample>& samples) {
@@ -90,15 +90,18 @@ float medianOf(const std::vector<Sample>& samples) {
 }
 
 /// Points along a limb at most kSampleSpacing_m apart, without its ends.
-void sampleLimb(const Keypoint& a, const Keypoint& b, float depth_m, const SceneGrid& grid,
-                std::vector<Sample>& samples) {
+std::vector<Sample> sampleLimb(const Keypoint& a, const Keypoint& b, float depth_m,
+                               const SceneGrid& grid) {
+  std::vector<Sample> samples;
   const float pixel_m = depth_m * grid.spacing / static_cast<float>(grid.step);
   const float length_m = std::hypot(b.u - a.u, b.v - a.v) * pixel_m;
-  const int parts = std::clamp(static_cast<int>(length_m / kSampleSpacing_m) + 1, 1, 20);
+  const int parts =
+      std::clamp(static_cast<int>(length_m / kSampleSpacing_m) + 1, 1, kMaxPartsOfLimb);
   for (int i = 1; i < parts; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(parts);
     samples.push_back(sampleAt(grid, a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)));
   }
+  return samples;
 }
 
 Eigen::Vector3f lift(const Keypoint& joint, float depth_m, const SceneGrid& grid) {
@@ -133,46 +136,6 @@ void addCapsules(const Person& person, const std::array<float, kJointCount>& dep
   }
 }
 
-/// Squared distance of a point to a line between two points.
-struct SegmentDistance {
-  Eigen::Vector3f start, direction;
-  float inverse_length2;
-
-  explicit SegmentDistance(const Capsule& c) : start(c.from), direction(c.to - c.from) {
-    const float length2 = direction.squaredNorm();
-    inverse_length2 = length2 > 1e-8F ? 1.0F / length2 : 0.0F;
-  }
-  float squared(float x, float y, float z) const {
-    const float dx = x - start.x(), dy = y - start.y(), dz = z - start.z();
-    const float t =
-        std::clamp((dx * direction.x() + dy * direction.y() + dz * direction.z()) * inverse_length2,
-                   0.0F, 1.0F);
-    const float ex = dx - t * direction.x(), ey = dy - t * direction.y(),
-                ez = dz - t * direction.z();
-    return ex * ex + ey * ey + ez * ez;
-  }
-};
-
-/// Columns and rows that a capsule with its reach can cover.
-cv::Rect boundsOf(const Capsule& capsule, float reach_m, const SceneGrid& grid) {
-  float left = 1e9F, right = -1e9F, top = 1e9F, bottom = -1e9F;
-  const float step_x = grid.spacing, step_y = grid.ray_y[grid.cols] - grid.ray_y[0];
-  for (const Eigen::Vector3f& p : {capsule.from, capsule.to}) {
-    const float z = std::max(0.2F, p.z() - 0.5F * reach_m);
-    const float col = (p.x() / p.z() - grid.ray_x[0]) / step_x;
-    const float row = (p.y() / p.z() - grid.ray_y[0]) / step_y;
-    left = std::min(left, col - reach_m / z / step_x);
-    right = std::max(right, col + reach_m / z / step_x);
-    top = std::min(top, row - reach_m / z / step_y);
-    bottom = std::max(bottom, row + reach_m / z / step_y);
-  }
-  const auto inside = [](float value, int limit) {
-    return static_cast<int>(std::clamp(value, 0.0F, static_cast<float>(limit)));
-  };
-  const int x0 = inside(left, grid.cols), y0 = inside(top, grid.rows);
-  return {x0, y0, inside(right + 1.0F, grid.cols) - x0, inside(bottom + 1.0F, grid.rows) - y0};
-}
-
 }  // namespace
 
 Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m) {
@@ -189,13 +152,14 @@ Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m)
   if (depth_m <= 0.0F) return body;
   for (const Limb& limb : kLimbs) {
     if (!limbIsSeen(person, limb)) continue;
-    sampleLimb(person.joints[static_cast<int>(limb.from)], person.joints[static_cast<int>(limb.to)],
-               depth_m, grid, samples);
+    const auto along = sampleLimb(person.joints[static_cast<int>(limb.from)],
+                                  person.joints[static_cast<int>(limb.to)], depth_m, grid);
+    samples.insert(samples.end(), along.begin(), along.end());
   }
   std::vector<Sample> kept;
   for (const Sample& sample : samples) {
     if (sample.depth_m > 0.0F && std::abs(sample.depth_m - depth_m) < kMaxDepthSpread_m &&
-        std::abs(grid.z[sample.cell] - sample.depth_m) < 0.1F) {
+        std::abs(grid.z[sample.cell] - sample.depth_m) < kMaxOffMedian_m) {
       kept.push_back(sample);
       body.seeds.push_back(sample.cell);
     }
@@ -209,34 +173,6 @@ Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m)
   }
   addCapsules(person, joint_depth, grid, body);
   return body;
-}
-
-void measureDistance(const std::vector<Body>& bodies, const SceneGrid& grid, float limit,
-                     BodyDistance& distance) {
-  distance.relative.assign(grid.size(), limit);
-  distance.owner.assign(grid.size(), -1);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    for (const Capsule& capsule : bodies[b].capsules) {
-      const SegmentDistance segment(capsule);
-      const cv::Rect bounds = boundsOf(capsule, limit * capsule.radius_m, grid);
-      const float inverse_radius = 1.0F / capsule.radius_m;
-      parallelFor(std::max(0, bounds.height), 16, [&](std::size_t begin, std::size_t end) {
-        for (int row = bounds.y + static_cast<int>(begin); row < bounds.y + static_cast<int>(end);
-             ++row) {
-          for (int col = bounds.x; col < bounds.x + bounds.width; ++col) {
-            const int cell = row * grid.cols + col;
-            const float z = grid.z[cell] > 0.0F ? grid.z[cell] : bodies[b].depth_m;
-            const float relative =
-                std::sqrt(segment.squared(grid.ray_x[cell] * z, grid.ray_y[cell] * z, z)) *
-                inverse_radius;
-            if (relative >= distance.relative[cell]) continue;
-            distance.relative[cell] = relative;
-            distance.owner[cell] = static_cast<std::int16_t>(b);
-          }
-        }
-      });
-    }
-  }
 }
 
 }  // namespace pf

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "posefusion/segmentation/paper_cut.hpp"
+
 namespace pf {
 namespace {
 
@@ -12,16 +14,14 @@ struct Neighbour {
   int right, down;
   float factor;  // a diagonal edge stands for less of the border's length
 };
+constexpr float kDiagonal = 0.707F;
 constexpr std::array<Neighbour, 4> kNeighbours{
-    {{1, 0, 1.0F}, {0, 1, 1.0F}, {1, 1, 0.707F}, {-1, 1, 0.707F}}};
+    {{1, 0, 1.0F}, {0, 1, 1.0F}, {1, 1, kDiagonal}, {-1, 1, kDiagonal}}};
 
 constexpr float kHoleEdge = 0.15F;       // part of the smoothness across missing depth
-constexpr float kColourSpread = 900.0F;  // square of a difference that makes an edge cheap
-
-float distanceBetween(const SceneGrid& grid, int a, int b) {
-  const float dx = grid.x[a] - grid.x[b], dy = grid.y[a] - grid.y[b], dz = grid.z[a] - grid.z[b];
-  return std::sqrt(dx * dx + dy * dy + dz * dz);
-}
+constexpr float kColourSpread = 900.0F;  // square of a colour difference that makes an edge cheap
+constexpr float kColourlessEdge = 0.4F;  // part of the smoothness that colour does not touch
+constexpr float kMinReach = 2.5F;        // of the length scale, in spacings of neighbours there
 
 float colourDifference2(const SceneGrid& grid, int a, int b) {
   const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
@@ -36,16 +36,11 @@ float colourDifference2(const SceneGrid& grid, int a, int b) {
 
 }  // namespace
 
-/// Cells at -kCertain with no chance stay out of the graph: they only pull on their neighbours.
+/// Cells that cannot be a person stay out of the graph: they only pull on their neighbours.
 template <typename Weight>
-void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& weight,
-                       std::vector<std::uint8_t>& labels) {
-  labels.assign(grid.size(), 0);
-  node_.assign(grid.size(), -1);
+void GridCutter::addNodes(const SceneGrid& grid, const Unary& unary, const Weight& weight) {
   const auto inGraph = [&](int cell) { return unary[cell] > -kCertain; };
-  int nodes = 0;
-  for (int cell = 0; cell < grid.size(); ++cell) nodes += inGraph(cell);
-  graph_.begin(nodes, 4 * nodes);
+  node_.assign(grid.size(), -1);
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (!inGraph(cell)) continue;
     float outside = 0.0F;
@@ -61,6 +56,10 @@ void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& 
     node_[cell] =
         graph_.addNode(std::max(0.0F, unary[cell]), std::max(0.0F, -unary[cell]) + outside);
   }
+}
+
+template <typename Weight>
+void GridCutter::addEdges(const SceneGrid& grid, const Weight& weight) {
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (node_[cell] < 0) continue;
     const int row = cell / grid.cols, col = cell % grid.cols;
@@ -68,13 +67,9 @@ void GridCutter::solve(const SceneGrid& grid, const Unary& unary, const Weight& 
       const int r = row + n.down, c = col + n.right;
       if (r >= grid.rows || c < 0 || c >= grid.cols) continue;
       const int other = r * grid.cols + c;
-      if (node_[other] >= 0)
-        graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
+      if (node_[other] < 0) continue;
+      graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
     }
-  }
-  graph_.solve();
-  for (int cell = 0; cell < grid.size(); ++cell) {
-    labels[cell] = node_[cell] >= 0 && graph_.isPerson(node_[cell]);
   }
 }
 
@@ -84,47 +79,27 @@ void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const Segmentati
   const float sigma_m = static_cast<float>(config.sigma_m);
   const auto weight = [&](int a, int b) {
     const float contrast = std::exp(-colourDifference2(grid, a, b) / kColourSpread);
-    const float blended = smoothness * (0.4F + 0.6F * contrast);
+    const float blended = smoothness * (kColourlessEdge + (1.0F - kColourlessEdge) * contrast);
     if (!grid.hasDepth(a) || !grid.hasDepth(b)) return kHoleEdge * blended;
-    // Neighbours are farther apart on far surfaces.
-    const float reach = std::max(sigma_m, 2.5F * grid.spacing * grid.z[a]);
-    return blended * smoothnessCost(distanceBetween(grid, a, b), reach);
+    const float reach_m = std::max(sigma_m, kMinReach * grid.spacing * grid.z[a]);
+    return blended * smoothnessCost((grid.point(a) - grid.point(b)).norm(), reach_m);
   };
-  solve(grid, unary, weight, labels);
-}
-
-void GridCutter::cutPaper(const SceneGrid& grid, const std::vector<Body>& bodies,
-                          const Eigen::Vector3f& up, const SegmentationConfig& config,
-                          std::vector<std::uint8_t>& labels) {
-  std::vector<Eigen::Vector3f> seeds;
-  std::vector<int> seed_cells;
-  for (const Body& body : bodies) {
-    for (int cell : body.seeds) {
-      seeds.emplace_back(grid.x[cell], grid.y[cell], grid.z[cell]);
-      seed_cells.push_back(cell);
-    }
-  }
-  paper_unary_.assign(grid.size(), -kCertain);
+  graph_.begin(grid.size(), static_cast<int>(kNeighbours.size()) * grid.size());
+  addNodes(grid, unary, weight);
+  addEdges(grid, weight);
+  graph_.solve();
+  labels.assign(grid.size(), 0);
   for (int cell = 0; cell < grid.size(); ++cell) {
-    if (!grid.hasDepth(cell)) continue;
-    const Eigen::Vector3f point(grid.x[cell], grid.y[cell], grid.z[cell]);
-    paper_unary_[cell] = paperUnary(point, seeds, up, static_cast<float>(config.paper_radius_m));
+    labels[cell] = node_[cell] >= 0 && graph_.isPerson(node_[cell]);
   }
-  for (int cell : seed_cells) paper_unary_[cell] = kCertain;
-  const float sigma_m = static_cast<float>(config.paper_sigma_m);
-  const auto weight = [&](int a, int b) {
-    if (!grid.hasDepth(a) || !grid.hasDepth(b)) return 0.0F;
-    return smoothnessCost(distanceBetween(grid, a, b), sigma_m);
-  };
-  solve(grid, paper_unary_, weight, labels);
 }
 
-void keepAnchoredRegions(const SceneGrid& grid, const std::vector<Body>& bodies,
+void keepAnchoredRegions(const SceneGrid& grid, const std::vector<TrackedPerson>& people,
                          std::vector<std::uint8_t>& labels) {
   std::vector<int> open;
   std::vector<std::uint8_t> reached(labels.size(), 0);
-  for (const Body& body : bodies) {
-    for (int anchor : body.anchors) {
+  for (const TrackedPerson& tracked : people) {
+    for (int anchor : tracked.body.anchors) {
       if (labels[anchor] == 0 || reached[anchor] != 0) continue;
       reached[anchor] = 1;
       open.push_back(anchor);

@@ -37,12 +37,12 @@ int GraphCut::addNode(float person_weight, float background_weight) {
   return node;
 }
 
-void GraphCut::addEdge(int a, int b, float forward, float backward) {
-  const int there = toSteps(forward), back = toSteps(backward);
-  if (there > 0 || back > 0) graph_->solver.addEdges(a, b, there, back);
+void GraphCut::addEdge(int a, int b, float weight) {
+  const int steps = toSteps(weight);
+  if (steps > 0) graph_->solver.addEdges(a, b, steps, steps);
 }
 
-void GraphCut::solve() { graph_->solver.maxFlow(); }
+double GraphCut::solve() { return graph_->solver.maxFlow() / kSteps; }
 
 bool GraphCut::isPerson(int node) const { return graph_->solver.inSourceSegment(node); }
 

@@ -11,6 +11,10 @@
 namespace pf {
 namespace {
 
+constexpr float kFarOutside_px = 1e6F;  // still a whole number
+constexpr std::size_t kRowsAtOnce = 16;
+constexpr std::size_t kMaxDepths = 128;  // of a median
+
 /// The depth of a block: the valid pixel nearest to its centre. A mean would mix person and wall.
 float blockDepth(const cv::Mat& depth_m, int row, int col, int step) {
   const int centre = step / 2;
@@ -34,8 +38,8 @@ float blockDepth(const cv::Mat& depth_m, int row, int col, int step) {
 
 int SceneGrid::cellAt(float u, float v) const {
   if (!(u > -0.5F && v > -0.5F)) return -1;
-  const int col = static_cast<int>(std::lround(std::min(u, 1e6F))) / step;
-  const int row = static_cast<int>(std::lround(std::min(v, 1e6F))) / step;
+  const int col = static_cast<int>(std::lround(std::min(u, kFarOutside_px))) / step;
+  const int row = static_cast<int>(std::lround(std::min(v, kFarOutside_px))) / step;
   return col < cols && row < rows ? row * cols + col : -1;
 }
 
@@ -51,7 +55,7 @@ void sampleGrid(const RgbdFrame& frame, const cv::Mat& depth_m, int grid_width, 
   const PinholeCamera& camera = frame.camera;
   grid.spacing = static_cast<float>(grid.step / camera.fx);
   cv::resize(frame.color, grid.color, cv::Size(grid.cols, grid.rows), 0, 0, cv::INTER_AREA);
-  parallelFor(grid.rows, 16, [&](std::size_t begin, std::size_t end) {
+  parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
       for (int col = 0; col < grid.cols; ++col) {
         const int cell = row * grid.cols + col;
@@ -68,7 +72,7 @@ void sampleGrid(const RgbdFrame& frame, const cv::Mat& depth_m, int grid_width, 
 }
 
 float medianDepth(const SceneGrid& grid, int cell, int radius) {
-  std::array<float, 128> depths;
+  std::array<float, kMaxDepths> depths;
   std::size_t count = 0;
   const int row = cell / grid.cols;
   const int col = cell % grid.cols;

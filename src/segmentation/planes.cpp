@@ -4,17 +4,20 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace pf {
 namespace {
 
-constexpr int kPatch = 8;                 // cells along the side of a patch
-constexpr float kTolerance = 0.006F;      // of inverse depth, 1/m: 2.4 cm at 2 m
-constexpr float kMaxPatchError = 0.004F;  // rms of a patch's own fit, 1/m
-constexpr int kMinPatches = 12;
-constexpr double kMinArea_m2 = 0.35;  // as seen face on: more than a back
+constexpr int kPatch = 8;                  // cells along the side of a patch
+constexpr float kTolerance = 0.006F;       // of inverse depth, 1/m: 2.4 cm at 2 m
+constexpr float kMaxPatchError = 0.004F;   // rms of a patch's own fit, 1/m
+constexpr double kMinFilled = 0.7;         // of a patch's cells have depth
+constexpr double kMinInverseDepth = 0.05;  // 1/m, of a patch whose size is measured
+constexpr int kMinPatches = 12;            // of a large plane
+constexpr double kMinArea_m2 = 0.35;       // as seen face on: more than a back
 
 /// Sums from which a plane is fitted to inverse depths at (u, v), least squares.
 struct Moments {
@@ -47,7 +50,7 @@ struct Patch {
   Moments moments;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< u, v, 1
   double inverse_depth = 0;
-  double error = 1e9;
+  double error = std::numeric_limits<double>::max();  ///< rms of the fit, 1/m; no fit at first
 };
 
 }  // namespace
@@ -80,7 +83,7 @@ void PlaneFinder::State::fitPatch(const SceneGrid& grid, int index) {
       if (w > 0.0F) patch.moments.add(u, v, w);
     }
   }
-  if (patch.moments.count < 0.7 * kPatch * kPatch) return;
+  if (patch.moments.count < kMinFilled * kPatch * kPatch) return;
   const Eigen::Vector3d fit = patch.moments.plane();
   patch.centre = {u0 + 0.5 * (kPatch - 1), v0 + 0.5 * (kPatch - 1), 1.0};
   patch.inverse_depth = fit.dot(patch.centre);
@@ -129,7 +132,8 @@ bool PlaneFinder::State::isLarge(const SceneGrid& grid) const {
   if (static_cast<int>(members.size()) < kMinPatches) return false;
   double area_m2 = 0;
   for (int index : members) {
-    const double side_m = kPatch * grid.spacing / std::max(0.05, patches[index].inverse_depth);
+    const double side_m =
+        kPatch * grid.spacing / std::max(kMinInverseDepth, patches[index].inverse_depth);
     area_m2 += side_m * side_m;
   }
   return area_m2 > kMinArea_m2;

@@ -7,6 +7,8 @@
 
 #include "posefusion/segmentation/cut_grid.hpp"
 #include "posefusion/segmentation/energy.hpp"
+#include "posefusion/segmentation/mapped_people.hpp"
+#include "posefusion/segmentation/paper_cut.hpp"
 #include "posefusion/segmentation/planes.hpp"
 #include "posefusion/segmentation/upsample.hpp"
 
@@ -15,26 +17,37 @@ namespace {
 
 constexpr double kMinDepth_m = 0.25;
 constexpr double kMaxDepth_m = 8.0;
-constexpr int kSureJoints = 5;       // a detection with so many joints ...
-constexpr float kSureScore = 0.55F;  // ... and this score is a person even if the map has it
-constexpr double kInMapFrames = 10;  // ... for so long
-constexpr int kMinMaskCells = 12;
-constexpr float kMaxPriorSpread_m = 0.4F;  // in depth, of a carried mask around its person
-constexpr float kFading = 0.6F;            // of joints that are carried outside the mask
-constexpr float kFaded = 0.08F;
+constexpr int kMinMaskCells = 12;          // a smaller mask is nobody
+constexpr float kMaxMaskSpread_m = 0.4F;   // in depth, of a carried mask around its person
+constexpr float kUnlabelledFading = 0.6F;  // of the likelihood of joints outside the mask ...
+constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
+
+// A person who is part of the map by mistake.
+constexpr double kInMapFrames = 10;     // for so long after a sure detection
+constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
+constexpr float kInMapPart = 0.6F;      // ... this part agrees, for a person to be in the map
+
+// How much each frame without a detection ages a carried person.
+constexpr double kAgeing = 1.0;
+constexpr double kConfirmedAgeing = 0.25;  // the map shows that somebody stands before it
+constexpr double kBlindAgeing = 3.0;       // no map: the mask may leak into furniture unnoticed
+constexpr float kConfirmedKnown = 0.5F;    // confirmed: the map knows this part of the mask's cells
+constexpr float kConfirmedNearer = 0.7F;   // ... and this part of those stands before it
+
+constexpr double kMarginWidth_px = 640.0;  // image width that margin_px is given for
 
 /// Carried joints that the mask does not hold have lost their person: they fade, then go.
 void fadeLostJoints(const SceneGrid& grid, const std::vector<std::uint8_t>& labels,
-                    PersonTrack& track) {
-  for (Keypoint& joint : track.person.joints) {
+                    Person& person) {
+  for (Keypoint& joint : person.joints) {
     const int cell = joint.p > 0.0F ? grid.cellAt(joint.u, joint.v) : -1;
     if (cell < 0 || labels[cell] != 0) continue;
-    joint.p *= kFading;
-    if (joint.p < kFaded) joint.p = 0.0F;
+    joint.p *= kUnlabelledFading;
+    if (joint.p < kFadedLikelihood) joint.p = 0.0F;
   }
 }
 
-/// Parts of cells on which the map agrees and which it has farther away, of those it knows.
+/// Number of cells on which the map has a say, with which it agrees, and which stand before it.
 struct MapVote {
   float known = 0, agrees = 0, nearer = 0;
 };
@@ -49,31 +62,28 @@ MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& bac
   return vote;
 }
 
-bool isSure(const Person& person) {
-  const auto joints = std::count_if(person.joints.begin(), person.joints.end(),
-                                    [](const Keypoint& k) { return k.p > 0.0F; });
-  return joints >= kSureJoints && person.score >= kSureScore;
-}
-
 }  // namespace
 
 struct PeopleSegmenter::State {
   cv::Mat depth_m;
-  SceneGrid grid;
-  std::vector<PersonTrack> tracks;
-  std::vector<Body> bodies;
+  std::vector<TrackedPerson> people;
+  Evidence evidence;
   MotionPredictor motion;
   PlaneFinder planes;
-  Evidence evidence;
   Unary unary;
   GridCutter cutter;
+  PaperCutter paper_cutter;
   std::vector<std::uint8_t> labels;
 
   void takeGrid(const RgbdFrame& frame, int grid_width);
-  std::vector<int> cellsBeforeMap(const PersonTrack& track) const;
-  void locate(const SegmentationConfig& config);
-  void cut(const SegmentationConfig& config, const std::optional<Eigen::Vector3d>& up_camera);
-  void keepTracks(const SegmentationConfig& config);
+  std::vector<int> cellsBeforeMap(const TrackedPerson& tracked) const;
+  bool lift(TrackedPerson& tracked, int carry_frames) const;
+  void locate(int carry_frames);
+  void markCarriedMasks();
+  void cut(const SegmentationConfig& config);
+  void keepPeople(bool with_map);
+  cv::Mat inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const;
+  void finish(const RgbdFrame& frame, int margin_px, Segmentation& result) const;
 };
 
 PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config)
@@ -84,131 +94,156 @@ PeopleSegmenter::~PeopleSegmenter() = default;
 /// one has another size, they mean nothing and the people are forgotten.
 void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
   const auto sizeOf = [](const SceneGrid& g) { return std::make_tuple(g.cols, g.rows, g.step); };
-  const auto last = sizeOf(grid);
-  sampleGrid(frame, depth_m, grid_width, grid);
-  if (sizeOf(grid) != last) tracks.clear();
+  const auto last = sizeOf(evidence.grid);
+  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m);
+  sampleGrid(frame, depth_m, grid_width, evidence.grid);
+  if (sizeOf(evidence.grid) != last) people.clear();
 }
 
 /// Cells of the carried mask, at the person's depth, that lie in front of the known background.
-std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const PersonTrack& track) const {
+std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const TrackedPerson& tracked) const {
   std::vector<int> cells;
-  for (int cell : track.cells) {
+  for (int cell : tracked.cells) {
     if (evidence.background[cell] == Background::nearer &&
-        std::abs(grid.z[cell] - track.depth_m) < kMaxPriorSpread_m) {
+        std::abs(evidence.grid.z[cell] - tracked.depth_m) < kMaxMaskSpread_m) {
       cells.push_back(cell);
     }
   }
   return cells;
 }
 
-/// Lifts every track into the scene; drops those that have no place there, and what only looks like
-/// a person and has long been part of the map.
-void PeopleSegmenter::State::locate(const SegmentationConfig& config) {
-  bodies.clear();
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    PersonTrack& track = tracks[t];
-    Body body = liftPerson(track.person, grid, track.fresh ? 0.0F : track.depth_m);
-    const MapVote vote = voteOf(body.seeds, evidence.background);
-    const bool in_map = vote.known >= 3 && vote.agrees > 0.6F * vote.known;
-    if (track.fresh) track.in_map = in_map && isSure(track.person);
-    if (track.unseen > kInMapFrames) track.in_map = false;
-    if (in_map && track.fresh && !track.in_map) continue;
-    if (!track.in_map) {
-      body.seeds.erase(
-          std::remove_if(body.seeds.begin(), body.seeds.end(),
-                         [&](int cell) { return evidence.background[cell] == Background::agrees; }),
-          body.seeds.end());
-    }
-    body.anchors = cellsBeforeMap(track);
-    if (track.unseen > config.carry_frames) continue;
-    if (body.seeds.empty() && static_cast<int>(body.anchors.size()) < kMinMaskCells) continue;
-    if (body.depth_m <= 0.0F) body.depth_m = track.depth_m;
-    body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
-    track.depth_m = body.depth_m;
-    bodies.push_back(std::move(body));
-    if (kept != t) tracks[kept] = std::move(track);
-    ++kept;
+/// Lifts a person into the scene. False for people who have no place there, and for what only
+/// looks like a person and has long been part of the map.
+bool PeopleSegmenter::State::lift(TrackedPerson& tracked, int carry_frames) const {
+  tracked.body = liftPerson(tracked.person, evidence.grid, tracked.fresh ? 0.0F : tracked.depth_m);
+  Body& body = tracked.body;
+  const MapVote vote = voteOf(body.seeds, evidence.background);
+  const bool in_map = vote.known >= kMinKnownSeeds && vote.agrees > kInMapPart * vote.known;
+  if (tracked.fresh) tracked.in_map = in_map && isSure(tracked.person);
+  if (tracked.unseen > kInMapFrames) tracked.in_map = false;
+  if (in_map && tracked.fresh && !tracked.in_map) return false;
+  if (!tracked.in_map) {
+    const auto agrees = [&](int cell) { return evidence.background[cell] == Background::agrees; };
+    body.seeds.erase(std::remove_if(body.seeds.begin(), body.seeds.end(), agrees),
+                     body.seeds.end());
   }
-  tracks.resize(kept);
-  evidence.prior.assign(grid.size(), -1);
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    for (int cell : tracks[t].cells) {
-      if (grid.hasDepth(cell) && std::abs(grid.z[cell] - tracks[t].depth_m) > kMaxPriorSpread_m) {
-        continue;
-      }
-      evidence.prior[cell] = static_cast<std::int16_t>(t);
+  body.anchors = cellsBeforeMap(tracked);
+  if (tracked.unseen > carry_frames) return false;
+  if (body.seeds.empty() && static_cast<int>(body.anchors.size()) < kMinMaskCells) return false;
+  if (body.depth_m <= 0.0F) body.depth_m = tracked.depth_m;
+  body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
+  tracked.depth_m = body.depth_m;
+  return true;
+}
+
+void PeopleSegmenter::State::locate(int carry_frames) {
+  std::vector<TrackedPerson> located;
+  for (TrackedPerson& tracked : people) {
+    if (lift(tracked, carry_frames)) located.push_back(std::move(tracked));
+  }
+  people.swap(located);
+}
+
+void PeopleSegmenter::State::markCarriedMasks() {
+  const SceneGrid& grid = evidence.grid;
+  evidence.carried.assign(grid.size(), -1);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    for (int cell : people[i].cells) {
+      const float gap_m = std::abs(grid.z[cell] - people[i].depth_m);
+      if (grid.hasDepth(cell) && gap_m > kMaxMaskSpread_m) continue;
+      evidence.carried[cell] = static_cast<std::int16_t>(i);
     }
   }
 }
 
-void PeopleSegmenter::State::cut(const SegmentationConfig& config,
-                                 const std::optional<Eigen::Vector3d>& up_camera) {
-  measureDistance(bodies, grid, kDistanceLimit, evidence.distance);
-  if (config.energy == "paper") {
-    const Eigen::Vector3f up =
-        up_camera ? up_camera->cast<float>().normalized() : Eigen::Vector3f::UnitZ();
-    cutter.cutPaper(grid, bodies, up, config, labels);
-    return;
-  }
-  planes.find(grid, evidence.on_plane);
-  improvedUnary(grid, evidence, bodies, config, tracks, unary);
-  cutter.cut(grid, unary, config, labels);
-  keepAnchoredRegions(grid, bodies, labels);
+void PeopleSegmenter::State::cut(const SegmentationConfig& config) {
+  markCarriedMasks();
+  measureDistance(people, evidence.grid, kDistanceLimit, evidence.distance);
+  planes.find(evidence.grid, evidence.on_plane);
+  improvedUnary(evidence, config, people, unary);
+  cutter.cut(evidence.grid, unary, config, labels);
+  keepAnchoredRegions(evidence.grid, people, labels);
 }
 
-/// Hands the mask's cells to the people for the next frame, and lets the unconfirmed grow old.
-void PeopleSegmenter::State::keepTracks(const SegmentationConfig&) {
-  for (PersonTrack& track : tracks) track.cells.clear();
-  for (int cell = 0; cell < grid.size(); ++cell) {
+/// Hands the mask's cells to the people for the next frame; people without a mask go.
+void PeopleSegmenter::State::keepPeople(bool with_map) {
+  for (TrackedPerson& tracked : people) tracked.cells.clear();
+  for (int cell = 0; cell < evidence.grid.size(); ++cell) {
     if (labels[cell] == 0) continue;
-    int owner = evidence.distance.owner.empty() ? -1 : evidence.distance.owner[cell];
-    if (owner < 0) owner = evidence.prior[cell];
-    if (owner >= 0) tracks[owner].cells.push_back(cell);
+    int owner = evidence.distance.owner[cell];
+    if (owner < 0) owner = evidence.carried[cell];
+    if (owner >= 0) people[owner].cells.push_back(cell);
   }
-  for (PersonTrack& track : tracks) {
-    const MapVote vote = voteOf(track.cells, evidence.background);
-    const float cells = static_cast<float>(track.cells.size());
-    const bool confirmed = vote.known > 0.5F * cells && vote.nearer > 0.7F * vote.known;
-    track.unseen += confirmed ? 0.25 : 1.0;
-    fadeLostJoints(grid, labels, track);
+  for (TrackedPerson& tracked : people) {
+    const MapVote vote = voteOf(tracked.cells, evidence.background);
+    const float cells = static_cast<float>(tracked.cells.size());
+    const bool confirmed =
+        vote.known > kConfirmedKnown * cells && vote.nearer > kConfirmedNearer * vote.known;
+    tracked.unseen += confirmed ? kConfirmedAgeing : with_map ? kAgeing : kBlindAgeing;
+    fadeLostJoints(evidence.grid, labels, tracked.person);
   }
-  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
-                              [](const PersonTrack& track) {
-                                return static_cast<int>(track.cells.size()) < kMinMaskCells;
-                              }),
-               tracks.end());
+  const auto isNobody = [](const TrackedPerson& tracked) {
+    return static_cast<int>(tracked.cells.size()) < kMinMaskCells;
+  };
+  people.erase(std::remove_if(people.begin(), people.end(), isNobody), people.end());
+}
+
+cv::Mat PeopleSegmenter::State::inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const {
+  const std::vector<std::uint8_t> mapped = findMappedPeople(evidence, people, labels);
+  if (std::count(mapped.begin(), mapped.end(), 0) == evidence.grid.size()) return {};
+  return upsampleMask(frame, depth_m, evidence.grid, mapped) & mask;
+}
+
+/// Brings the labels to full resolution and takes the people out of the depth.
+void PeopleSegmenter::State::finish(const RgbdFrame& frame, int margin_px,
+                                    Segmentation& result) const {
+  result.mask = upsampleMask(frame, depth_m, evidence.grid, labels);
+  const double margin = margin_px * frame.depth.cols / kMarginWidth_px;
+  result.static_depth =
+      removeMasked(frame.depth, result.mask, static_cast<int>(std::lround(margin)));
 }
 
 Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,
                                       const People& people, const ModelView* background,
                                       const std::optional<Eigen::Vector3d>& up_camera) {
   State& s = *state_;
-  Segmentation result{cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
+  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
+  if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) T_view_camera = s.motion.predict(*background, frame.stamp_ns);
-  if (!config_.enabled || (s.tracks.empty() && people.people.empty())) {
-    return result;
-  }
-  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, s.depth_m);
+  if (!config_.enabled || (s.people.empty() && people.people.empty())) return result;
   s.takeGrid(frame, config_.grid_width);
-  carryTracks(flow, s.grid, s.tracks);
-  mergeDetections(people, s.grid, s.tracks);
+  carryPeople(flow, s.evidence.grid, s.people);
+  mergeDetections(people, s.evidence.grid, s.people);
+  s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
-    compareWithModel(s.grid, *background, T_view_camera, s.evidence.background);
-  } else {
-    s.evidence.background.assign(s.grid.size(), Background::unknown);
+    compareWithModel(s.evidence.grid, *background, T_view_camera, s.evidence.background);
   }
-  s.locate(config_);
-  if (!s.tracks.empty()) {
-    s.cut(config_, up_camera);
-    upsampleMask(frame, s.depth_m, s.grid, s.labels, result.mask);
-    for (const PersonTrack& track : s.tracks) result.people.people.push_back(track.person);
-    s.keepTracks(config_);
-    const double margin = static_cast<double>(config_.margin_px) * frame.depth.cols / 640.0;
-    result.static_depth =
-        removeMasked(frame.depth, result.mask, static_cast<int>(std::lround(margin)));
-  }
+  s.locate(config_.carry_frames);
+  if (s.people.empty()) return result;
+  s.cut(config_);
+  s.finish(frame, config_.margin_px, result);
+  result.in_map_mask = s.inMapMask(frame, result.mask);
+  for (const TrackedPerson& tracked : s.people) result.people.people.push_back(tracked.person);
+  s.keepPeople(background != nullptr);
+  return result;
+}
+
+Segmentation PeopleSegmenter::segmentAsThePaper(const RgbdFrame& frame, const People& people,
+                                                const std::optional<Eigen::Vector3d>& up_camera) {
+  State& s = *state_;
+  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
+  if (!config_.enabled || people.people.empty()) return result;
+  s.takeGrid(frame, config_.grid_width);
+  const std::vector<Eigen::Vector3f> seeds = liftJoints(people, s.evidence.grid);
+  if (seeds.empty()) return result;
+  PaperTerms terms;
+  terms.sigma_m = static_cast<float>(config_.paper_sigma_m);
+  terms.radius_m = static_cast<float>(config_.paper_radius_m);
+  if (up_camera) terms.up = up_camera->cast<float>().normalized();
+  s.paper_cutter.cut(s.evidence.grid, seeds, terms, s.labels);
+  s.finish(frame, config_.margin_px, result);
+  result.people.people = people.people;
   return result;
 }
 

@@ -87,6 +87,7 @@ void Mapper::State::fuse(const Location& location) {
   options.offset = -b.offset / b.gain;
   fuser.fuse(frame, location.T_map_camera, map, options);
   renderer.render(map, frame.camera, location.T_map_camera, RenderOptions{}, view);
+  view.stamp_ns = last_stamp_ns;
   model.assign(view, &frame.levels[0]);
 }
 

@@ -188,6 +188,7 @@ TEST(RosConversions, StatusConstantsAreThoseOfTheCore) {
 }  // namespace
 TEST(ModelView, KeepsEveryPlaneTheSegmenterReads) {
   pf::ModelView view;
+  view.stamp_ns = 1234567890123456789LL;
   view.camera.width = 4;
   view.camera.height = 3;
   view.camera.fx = view.camera.fy = 5;
@@ -204,6 +205,7 @@ TEST(ModelView, KeepsEveryPlaneTheSegmenterReads) {
   view.stable.at<std::uint8_t>(1, 2) = 0;
   const ModelViewMsg::ConstPtr message = toMessage(view, std_msgs::Header());  // owns the pixels
   const pf::ModelView read = fromMessage(message);
+  EXPECT_EQ(read.stamp_ns, view.stamp_ns);
   EXPECT_TRUE(read.camera == view.camera);
   EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
   for (const auto plane :

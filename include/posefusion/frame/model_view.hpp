@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 #include "posefusion/core/camera.hpp"
@@ -10,6 +11,7 @@ namespace pf {
 
 /// The map seen from a pose. All images have the camera's size; where depth is 0 nothing was hit.
 struct ModelView {
+  std::int64_t stamp_ns = 0;  ///< of the frame whose pose it is rendered from
   PinholeCamera camera;
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing

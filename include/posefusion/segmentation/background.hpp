@@ -27,18 +27,23 @@ enum class Background : std::uint8_t {
 void compareWithModel(const SceneGrid& grid, const ModelView& view,
                       const Eigen::Isometry3d& T_view_camera, std::vector<Background>& result);
 
-/// Predicts where the camera is from the last two views, by constant velocity.
+/// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
+/// views that differ: a view may be older than the frame before (live, or where that was not
+/// fused).
 class MotionPredictor {
  public:
-  /// T_view_camera for the frame at `stamp_ns` given the newest view. Call once per frame.
+  /// T_view_camera for the frame at `stamp_ns` given the newest view.
   Eigen::Isometry3d predict(const ModelView& view, std::int64_t stamp_ns);
   void reset() { *this = MotionPredictor(); }
 
  private:
-  int frames_ = 0;
-  std::int64_t view_stamp_ns_ = 0;   ///< of the frame before this one
-  std::int64_t other_stamp_ns_ = 0;  ///< of the frame before that
-  Eigen::Isometry3d T_map_other_ = Eigen::Isometry3d::Identity();
+  struct StampedPose {
+    std::int64_t stamp_ns = 0;
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  };
+
+  int frames_ = 0;  // views seen
+  StampedPose newest_, before_;
 };
 
 }  // namespace pf

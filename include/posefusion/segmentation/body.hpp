@@ -31,15 +31,4 @@ struct Body {
 /// it: so a person who is carried forward does not jump to another who walks in front.
 Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m = 0.0F);
 
-/// Distance of every cell to the body's surface line, relative to the capsules' radius (1 = on the
-/// surface), at most `limit`. Cells without depth are taken to be at the body's depth.
-/// `relative` keeps the smaller of its value and the new one and `owner` the index of the body that
-/// is nearest.
-struct BodyDistance {
-  std::vector<float> relative;
-  std::vector<std::int16_t> owner;  ///< -1: no body within the limit
-};
-void measureDistance(const std::vector<Body>& bodies, const SceneGrid& grid, float limit,
-                     BodyDistance& distance);
-
 }  // namespace pf

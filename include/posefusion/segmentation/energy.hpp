@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 #include "posefusion/segmentation/background.hpp"
-#include "posefusion/segmentation/body.hpp"
+#include "posefusion/segmentation/body_distance.hpp"
 #include "posefusion/segmentation/config.hpp"
 #include "posefusion/segmentation/grid.hpp"
-#include "posefusion/segmentation/tracks.hpp"
+#include "posefusion/segmentation/tracked_people.hpp"
 
 namespace pf {
 
-/// What is known of the cells before the cut.
+/// What is known of the cells of a frame before the cut.
 struct Evidence {
+  SceneGrid grid;
   std::vector<Background> background;  ///< all unknown without a map
   std::vector<std::uint8_t> on_plane;  ///< 1 = part of a large plane
-  std::vector<std::int16_t> prior;     ///< track whose carried mask holds the cell, -1: none
+  std::vector<std::int16_t> carried;   ///< person whose carried mask holds the cell, -1: none
   BodyDistance distance;
 };
 
@@ -30,19 +30,12 @@ constexpr float kCertain = 1000.0F;
 /// Distance beyond which a cell's distance to the bodies no longer matters, in capsule radii.
 constexpr float kDistanceLimit = 4.0F;
 
+/// Part of a large plane, and not known to stand before the map.
+bool isFlat(const Evidence& evidence, int cell);
+
 /// Sum of the improved terms: distance to the skeletons in space, colour, agreement with the map,
-/// planes, the carried mask. Updates the colours of the tracks.
-void improvedUnary(const SceneGrid& grid, const Evidence& evidence, const std::vector<Body>& bodies,
-                   const SegmentationConfig& config, std::vector<PersonTrack>& tracks,
-                   Unary& unary);
-
-/// The paper's background penalty P = horizontal distance to the nearest seed / radius, against the
-/// constant foreground weight of PCL's MinCutSegmentation. `up`: unit vector, the distance is
-/// measured perpendicular to it.
-float paperUnary(const Eigen::Vector3f& point, const std::vector<Eigen::Vector3f>& seeds,
-                 const Eigen::Vector3f& up, float radius_m);
-
-/// The paper's smoothness cost C = exp(-(length / sigma)^2).
-float smoothnessCost(float length_m, float sigma_m);
+/// planes, the carried mask. Updates the colours of the people.
+void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
+                   std::vector<TrackedPerson>& people, Unary& unary);
 
 }  // namespace pf

@@ -18,10 +18,9 @@ class GraphCut {
   /// the other side.
   int addNode(float person_weight, float background_weight);
   /// Adds an edge whose weight, >= 0, is paid when its ends are separated.
-  void addEdge(int a, int b, float weight) { addEdge(a, b, weight, weight); }
-  /// The first weight is paid when a is person and b is not, the second in the other case.
-  void addEdge(int a, int b, float forward, float backward);
-  void solve();
+  void addEdge(int a, int b, float weight);
+  /// Returns the cost of the cheapest cut.
+  double solve();
   bool isPerson(int node) const;
 
  private:

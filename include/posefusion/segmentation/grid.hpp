@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -22,6 +22,7 @@ struct SceneGrid {
 
   int size() const { return cols * rows; }
   bool hasDepth(int cell) const { return z[cell] > 0.0F; }
+  Eigen::Vector3f point(int cell) const { return {x[cell], y[cell], z[cell]}; }
   /// Cell of a pixel, -1 outside the image.
   int cellAt(float u, float v) const;
 };

@@ -17,6 +17,9 @@ namespace pf {
 /// A frame without its people.
 struct Segmentation {
   cv::Mat mask;          ///< CV_8UC1, frame size, 255 = person; empty when there is none
+  cv::Mat in_map_mask;   ///< CV_8UC1, frame size, 255 = a surface of the map that is a person's, as
+                         ///< a sure detection shows: what the map holds there must go; empty when
+                         ///< there is none
   cv::Mat static_depth;  ///< depth of the frame, people removed (0 or NaN); the very same pixels as
                          ///< the input when there is nobody
   People people;         ///< as used: detected, or carried forward to this frame
@@ -31,8 +34,10 @@ class PeopleSegmenter {
 
   /// `flow` has been advanced to this frame (once for each frame, also while there is nobody): it
   /// carries people from the last frame into this one. After a change of the image size nobody is
-  /// carried. `background` is the map rendered at the pose of the previous frame, or null while
-  /// there is no map: what agrees with it is no person. `up_camera` is the upward direction in the
+  /// carried. `background` is the map rendered at the last trusted pose, with the stamp of its
+  /// frame: what agrees with it is no person. Null while there is no map or the camera is lost in
+  /// it: nothing is known of the background then, and people are carried a third as long.
+  /// `up_camera` is the upward direction in the
   /// camera frame when known (TF or configuration).
   Segmentation segment(const RgbdFrame& frame, const FlowTracker& flow, const People& people,
                        const ModelView* background,
@@ -41,6 +46,9 @@ class PeopleSegmenter {
 
  private:
   struct State;
+  Segmentation segmentAsThePaper(const RgbdFrame& frame, const People& people,
+                                 const std::optional<Eigen::Vector3d>& up_camera);
+
   SegmentationConfig config_;
   std::unique_ptr<State> state_;
 };

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/mapped_people.hpp"
+
+#include <algorithm>
+
+namespace pf {
+namespace {
+
+constexpr int kSureJoints = 5;
+constexpr float kSureScore = 0.55F;   // of the detection
+constexpr float kMappedReach = 1.5F;  // capsule radii within which a surface is the person's
+
+bool isMapped(const Evidence& evidence, const TrackedPerson& tracked, int cell) {
+  if (isFlat(evidence, cell) || evidence.distance.relative[cell] > kMappedReach) return false;
+  const Background background = evidence.background[cell];
+  if (background == Background::agrees) return tracked.in_map;
+  return background == Background::recent &&
+         (tracked.in_map || (tracked.fresh && isSure(tracked.person)));
+}
+
+}  // namespace
+
+bool isSure(const Person& person) {
+  const auto joints = std::count_if(person.joints.begin(), person.joints.end(),
+                                    [](const Keypoint& k) { return k.p > 0.0F; });
+  return joints >= kSureJoints && person.score >= kSureScore;
+}
+
+std::vector<std::uint8_t> findMappedPeople(const Evidence& evidence,
+                                           const std::vector<TrackedPerson>& people,
+                                           const std::vector<std::uint8_t>& labels) {
+  std::vector<std::uint8_t> mapped(labels.size(), 0);
+  for (int cell = 0; cell < evidence.grid.size(); ++cell) {
+    const int owner = evidence.distance.owner[cell];
+    mapped[cell] = labels[cell] != 0 && owner >= 0 && isMapped(evidence, people[owner], cell);
+  }
+  return mapped;
+}
+
+}  // namespace pf
