@@ -16,6 +16,7 @@
 #include "posefusion_ros/credit_window.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transform_replay.hpp"
 
 namespace posefusion_ros {
@@ -55,7 +56,7 @@ FeederSettings readSettings() {
   s.input.topics.depth = parameters.text("depth_topic", "");
   s.input.topics.camera_info = parameters.text("camera_info_topic", "");
   for (const std::string& name : parameters.unknown()) {
-    ROS_WARN("parameter %s is none of the feeder and has no effect", name.c_str());
+    ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
   }
   return s;
 }
