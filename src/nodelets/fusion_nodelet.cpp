@@ -2,6 +2,8 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <cstdio>
+#include <iterator>
+#include <map>
 #include <memory>
 
 #include "posefusion/slam/mapper.hpp"
@@ -12,6 +14,7 @@
 #include "posefusion_ros/map_saver.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/trigger.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -22,6 +25,9 @@ using pf::FrameStatus;
 using sensor_msgs::CameraInfo;
 using sensor_msgs::Image;
 using std_srvs::Trigger;
+
+// More frames than that are not given up between two that arrive.
+constexpr std::size_t kMaxRejected = 100;
 
 /// Owns the map: tracks and fuses static frames, publishes pose and map, reports one status for
 /// every frame of the chain. Everything that touches the map runs in the worker.
@@ -34,7 +40,7 @@ class FusionNodelet : public ChainNodelet {
     reset_service_.shutdown();
     worker_.reset();
     if (!saver_ || !saver_->isOn()) return;  // start() may have failed anywhere
-    const std::string said = saver_->tryToSave(mapper_->map(), trajectory_);
+    const std::string said = saver_->finish(mapper_->map(), trajectory_);
     // The log is closed already when the whole manager ends.
     std::printf("%s: %s\n", getName().c_str(), said.c_str());
     std::fflush(stdout);
@@ -47,11 +53,12 @@ class FusionNodelet : public ChainNodelet {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
     const pf::Config config = parameters.config({"frame", "tracking", "map"});
-    const PoseOutputSettings poses = readPoseOutput(parameters);
-    map_frame_ = poses.map_frame;
     const bool lossless = parameters.flag("lossless", false);
+    const PoseOutputSettings poses = readPoseOutput(parameters, lossless);
+    map_frame_ = poses.map_frame;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     mapper_ = std::make_unique<pf::Mapper>(config);
+    remember(FrameStatus());
     saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
@@ -92,12 +99,25 @@ class FusionNodelet : public ChainNodelet {
     }
   }
 
-  /// A frame that another stage, or this one, has given up.
+  /// A frame that another stage, or this one, has given up. It is reported at once, but told to the
+  /// mapper in the order of the stamps: frames before it may still be on their way.
   void onRejected(const TrackingStatusMsg::ConstPtr& rejected) {
     worker_->post([this, rejected] {
-      publishStatus(mapper_->skip(0, FrameOutcome::bad_input), rejected->header.stamp,
-                    rejected->reason, rejected->outcome);
+      publishStatus(now_, rejected->header.stamp, rejected->reason, rejected->outcome);
+      rejected_waiting_[rejected->header.stamp] = outcomeOf(*rejected);
+      if (rejected_waiting_.size() > kMaxRejected) {
+        skipBefore(std::next(rejected_waiting_.begin())->first);
+      }
     });
+  }
+
+  /// Tells the mapper of the frames given up before this stamp.
+  void skipBefore(const ros::Time& stamp) {
+    const auto end = rejected_waiting_.lower_bound(stamp);
+    for (auto next = rejected_waiting_.begin(); next != end; ++next) {
+      remember(mapper_->skip(toNs(next->first), next->second));
+    }
+    rejected_waiting_.erase(rejected_waiting_.begin(), end);
   }
 
   /// In the worker.
@@ -105,26 +125,46 @@ class FusionNodelet : public ChainNodelet {
     const std_msgs::Header& header = std::get<1>(set)->header;
     guarded(header, [&] { fuse(set); });
     last_ = header.stamp;
-    map_output_->publishView(mapper_->view(), last_, false);  // always: the segmenter may wait
+    // Always, since the segmenter may wait. Lost, the view would be of another place.
+    const bool is_lost = now_.state == pf::TrackingState::lost;
+    map_output_->publishView(is_lost ? pf::ModelView() : mapper_->view(), last_, false);
   }
 
   void fuse(const Matcher::Set& set) {
     const auto& [info, color, depth, mask] = set;
     if (color->header.stamp < last_) startAnew();
+    skipBefore(color->header.stamp);
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
     const FrameStatus status =
         mapper_->process(frame, cv::countNonZero(people) > 0 ? people : cv::Mat());
+    remember(status);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     std::string reason = reasonOf(status);
-    if (status.outcome == FrameOutcome::fused) {
-      trajectory_.push_back({status.stamp_ns, status.T_map_camera});
-      reason = pose_output_->publish(color->header, status);
-      if (!reason.empty()) reason = "fused, but no pose published: " + reason;
-    }
+    if (isLocated(status)) publishPose(color->header, status, reason);
     if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
     map_output_->publishSurfels(mapper_->map(), color->header.stamp, pose_output_->mapFromStart());
     publishStatus(status, color->header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
+  }
+
+  /// Keeps and publishes the pose of a located frame; what goes wrong is added to `reason`.
+  void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
+    const pf::StampedPose pose{status.stamp_ns, status.T_map_camera};
+    trajectory_.push_back(pose);
+    const std::string unwritten = saver_->note(pose);
+    if (!unwritten.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unwritten.c_str());
+    std::string note;
+    if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
+    if (!reason.empty() && !note.empty()) reason += "; ";
+    reason += note;
+  }
+
+  void remember(const FrameStatus& status) {
+    now_ = FrameStatus();
+    now_.outcome = FrameOutcome::bad_input;
+    now_.state = status.state;
+    now_.T_map_camera = status.T_map_camera;
+    now_.surfels = status.surfels;
   }
 
   void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
@@ -144,13 +184,20 @@ class FusionNodelet : public ChainNodelet {
   /// The bag is played again: what there was is kept in a folder of its own.
   void startAnew() {
     if (saver_->isOn() && !trajectory_.empty()) {
-      NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
+      try {
+        NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
+      } catch (const std::exception& error) {  // the new map is worth more than the old one
+        NODELET_ERROR("the map before the jump is lost: %s", error.what());
+      }
     }
     clear();
   }
 
   void clear() {
     mapper_->reset();
+    saver_->discard();
+    remember(FrameStatus());
+    rejected_waiting_.clear();
     pose_output_->reset();
     map_output_->reset();
     trajectory_.clear();
@@ -181,7 +228,9 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<MapSaver> saver_;
   std::unique_ptr<pf::Mapper> mapper_;
   pf::Trajectory trajectory_;
-  ros::Time last_;  // the newest frame
+  ros::Time last_;   // the newest frame
+  FrameStatus now_;  // state, pose and size of the map, for frames that are given up
+  std::map<ros::Time, FrameOutcome> rejected_waiting_;  // until the frames before them are mapped
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;
   std::mutex status_mutex_;  // guards status_publisher_, which is advertised late

@@ -14,6 +14,7 @@
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/skeleton_markers.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transforms.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -43,9 +44,9 @@ class SegmenterNodelet : public ChainNodelet {
     lossless_ = parameters.flag("lossless", false);
     up_frame_ = plainFrame(parameters.text("up_frame", ""));
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
-    const double tf_timeout_s = parameters.number("tf_timeout_s", 0.1, {0.0, 10.0});
+    const LookupSettings lookup = readLookup(parameters, lossless_);
     report(parameters);
-    if (!up_frame_.empty()) lookup_ = std::make_unique<TransformLookup>(tf_timeout_s);
+    if (!up_frame_.empty()) lookup_ = std::make_unique<ListeningLookup>(lookup);
 
     matcher_ =
         std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });
@@ -121,15 +122,16 @@ class SegmenterNodelet : public ChainNodelet {
     return background_.newest();
   }
 
-  std::optional<Eigen::Vector3d> upOf(const std_msgs::Header& header) const {
+  std::optional<Eigen::Vector3d> upOf(const std_msgs::Header& header) {
     if (!lookup_) return std::nullopt;
-    std::string error;
-    const auto T = lookup_->find(plainFrame(header.frame_id), up_frame_, header.stamp, error);
+    std::string note;
+    const auto T = (*lookup_)->find(plainFrame(header.frame_id), up_frame_, header.stamp, note);
     if (!T) {
       NODELET_WARN_THROTTLE(5.0, "gravity unknown, horizontal means in the image plane: %s",
-                            error.c_str());
+                            note.c_str());
       return std::nullopt;
     }
+    if (!note.empty()) NODELET_WARN_THROTTLE(30.0, "%s", note.c_str());
     return T->linear() * Eigen::Vector3d::UnitZ();
   }
 
@@ -159,7 +161,7 @@ class SegmenterNodelet : public ChainNodelet {
 
   bool lossless_ = false;
   std::string up_frame_;
-  std::unique_ptr<TransformLookup> lookup_;
+  std::unique_ptr<ListeningLookup> lookup_;
   std::unique_ptr<pf::PeopleSegmenter> segmenter_;
   pf::FlowTracker flow_;
   ros::Time last_;  // the frame before; zero at the start
