@@ -2,52 +2,41 @@
 #include "posefusion/blur/gate.hpp"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 namespace pf {
-
-double scoreBlur(const cv::Mat& color) {
-  cv::Mat grey, response;
-  cv::cvtColor(color, grey, cv::COLOR_RGB2GRAY);
-  cv::Laplacian(grey, response, CV_16S, 1);
-  cv::Scalar mean, deviation;
-  cv::meanStdDev(response, mean, deviation);
-  return deviation[0] * deviation[0];
-}
 
 BlurGate::BlurGate(const BlurConfig& config) : config_(config) {}
 
 double BlurGate::threshold() const {
   if (config_.threshold > 0.0) return config_.threshold;
-  if (accepted_.empty()) return 0.0;
-  std::vector<double> scores(accepted_.begin(), accepted_.end());
-  const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(scores.size() / 2);
-  std::nth_element(scores.begin(), middle, scores.end());
+  if (recent_.empty()) return 0.0;
+  std::vector<double> values(recent_.begin(), recent_.end());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return config_.relative_threshold * *middle;
 }
 
-BlurScore BlurGate::judge(double score) {
+BlurScore BlurGate::judge(const Sharpness& sharpness) {
+  const bool fixed = config_.threshold > 0.0;
   BlurScore result;
-  result.score = score;
+  result.score = sharpness.laplacian_variance;
+  result.measure = fixed ? sharpness.laplacian_variance : sharpness.fine_detail;
   if (!config_.enabled) return result;
   result.threshold = threshold();
-  const bool forced = drops_in_a_row_ >= config_.max_consecutive_drops;
-  result.sharp = forced || score >= result.threshold;
-  if (!result.sharp) {
-    ++drops_in_a_row_;
-    return result;
-  }
-  // A frame that passes by force joins the history too: the scene itself may have become dull
-  // (a bare wall, a dark room), and the threshold has to follow it down.
-  drops_in_a_row_ = 0;
-  accepted_.push_back(score);
-  if (static_cast<int>(accepted_.size()) > config_.history_frames) accepted_.pop_front();
+  const bool unknown = !fixed && sharpness.dull;
+  const bool blurred = !unknown && result.measure < result.threshold;
+  result.forced = blurred && drops_in_a_row_ >= config_.max_consecutive_drops;
+  result.sharp = !blurred || result.forced;
+  drops_in_a_row_ = result.sharp ? 0 : drops_in_a_row_ + 1;
+  // Dropped frames count too: what lasts longer than a burst of blur is how the scene looks now.
+  if (!unknown) recent_.push_back(sharpness.fine_detail);
+  if (static_cast<int>(recent_.size()) > config_.history_frames) recent_.pop_front();
   return result;
 }
 
 void BlurGate::reset() {
-  accepted_.clear();
+  recent_.clear();
   drops_in_a_row_ = 0;
 }
 

@@ -76,12 +76,12 @@ class BlurGateNodelet : public ChainNodelet {
     const pf::PinholeCamera camera = toCamera(*info, rectified_ == "yes");
     const pf::RgbdFrame frame = toFrame(color, depth, camera);
     const pf::RgbdFrame straight = rectifier_.rectify(frame);
-    const pf::BlurScore blur = gate_->judge(pf::scoreBlur(straight.color));
+    const pf::BlurScore blur = gate_->judge(pf::measureSharpness(straight.color));
     publishScore(color->header, blur);
     if (!blur.sharp) {
-      reject(color->header, TrackingStatusMsg::BLURRED,
-             "blurred: score " + std::to_string(blur.score) + " below " +
-                 std::to_string(blur.threshold));
+      reject(
+          color->header, TrackingStatusMsg::BLURRED,
+          "blurred: " + std::to_string(blur.measure) + " below " + std::to_string(blur.threshold));
       return;
     }
     pass(straight, color, depth);
@@ -91,8 +91,10 @@ class BlurGateNodelet : public ChainNodelet {
     BlurScoreMsg message;
     message.header = header;
     message.score = blur.score;
+    message.measure = blur.measure;
     message.threshold = blur.threshold;
     message.sharp = static_cast<unsigned char>(blur.sharp);
+    message.forced = static_cast<unsigned char>(blur.forced);
     score_publisher_.publish(message);
   }
 

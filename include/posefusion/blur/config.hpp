@@ -9,7 +9,7 @@ namespace pf {
 struct BlurConfig {
   bool enabled = true;
   double threshold = 0.0;
-  double relative_threshold = 0.25;
+  double relative_threshold = 0.2;
   int history_frames = 30;
   int max_consecutive_drops = 15;
 };
@@ -18,12 +18,16 @@ inline void visitFields(BlurConfig& c, FieldVisitor& v) {
   v.flag("enabled", c.enabled, "drop blurred frames");
   v.number("threshold", c.threshold, 0.0, 1e6,
            "fixed threshold on the variance of the Laplacian (grey levels squared); 0 = adaptive");
-  v.number("relative_threshold", c.relative_threshold, 0.0, 1.0,
-           "adaptive: a frame is blurred below this part of the median of the recent sharp scores");
-  v.integer("history_frames", c.history_frames, 1, 10000,
-            "adaptive: how many accepted scores are remembered");
+  v.number(
+      "relative_threshold", c.relative_threshold, 0.0, 1.0,
+      "adaptive: a frame is blurred if its fine detail, for its coarse detail, is below this part "
+      "of the median of the recent frames");
+  v.integer(
+      "history_frames", c.history_frames, 1, 10000,
+      "adaptive: how many frames, dropped ones too, make the median; at least twice a burst of "
+      "blur");
   v.integer("max_consecutive_drops", c.max_consecutive_drops, 0, 10000,
-            "after so many drops in a row the next frame passes whatever its score");
+            "after so many drops in a row the next frame passes, to be located but not fused");
 }
 
 }  // namespace pf
