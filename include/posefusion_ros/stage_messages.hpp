@@ -23,16 +23,10 @@ SparseFlowMsg::Ptr toMessage(const pf::SparseFlow& flow, const std_msgs::Header&
 /// Throws InputError when it is not one of ours.
 pf::SparseFlow fromMessage(const SparseFlowMsg& message);
 
-/// Whether the pose of the status is that of its frame (it may be doubtful).
-bool isLocated(const pf::FrameStatus& status);
-
 /// `header` has the stamp of the frame and the map frame; `T_map_camera` is the camera's in that
 /// frame.
 TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera);
-
-/// What the mapper has to be told of a frame that another stage gave up.
-pf::FrameOutcome outcomeOf(const TrackingStatusMsg& rejected);
 
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T);
 

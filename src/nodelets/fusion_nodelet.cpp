@@ -2,8 +2,6 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <cstdio>
-#include <iterator>
-#include <map>
 #include <memory>
 
 #include "posefusion/slam/mapper.hpp"
@@ -26,16 +24,16 @@ using sensor_msgs::CameraInfo;
 using sensor_msgs::Image;
 using std_srvs::Trigger;
 
-// More frames than that are not given up between two that arrive.
-constexpr std::size_t kMaxRejected = 100;
-
 /// Owns the map: tracks and fuses static frames, publishes pose and map, reports one status for
 /// every frame of the chain. Everything that touches the map runs in the worker.
 class FusionNodelet : public ChainNodelet {
  public:
   ~FusionNodelet() override {
     stopWaiting();
-    for (ros::Subscriber* topic : {&rejected_, &info_, &color_, &depth_, &mask_}) topic->shutdown();
+    for (ros::Subscriber* topic :
+         {&rejected_, &info_, &color_, &depth_, &mask_, &flow_, &blur_score_}) {
+      topic->shutdown();
+    }
     save_service_.shutdown();
     reset_service_.shutdown();
     worker_.reset();
@@ -47,7 +45,7 @@ class FusionNodelet : public ChainNodelet {
   }
 
  private:
-  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image>;
+  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image, SparseFlowMsg, BlurScoreMsg>;
 
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
@@ -58,7 +56,6 @@ class FusionNodelet : public ChainNodelet {
     map_frame_ = poses.map_frame;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     mapper_ = std::make_unique<pf::Mapper>(config);
-    remember(FrameStatus());
     saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
@@ -74,6 +71,9 @@ class FusionNodelet : public ChainNodelet {
     color_ = handle.subscribe(topics::kSharpColor, kInternalQueue, &FusionNodelet::onColor, this);
     depth_ = handle.subscribe(topics::kStaticDepth, kInternalQueue, &FusionNodelet::onDepth, this);
     mask_ = handle.subscribe(topics::kMask, kInternalQueue, &FusionNodelet::onMask, this);
+    flow_ = handle.subscribe(topics::kFlow, kInternalQueue, &FusionNodelet::onFlow, this);
+    blur_score_ =
+        handle.subscribe(topics::kBlurScore, kInternalQueue, &FusionNodelet::onBlurScore, this);
     // Services wait for the worker: in a queue of their own.
     ros::NodeHandle& services = getMTPrivateNodeHandle();
     save_service_ = services.advertiseService("save_map", &FusionNodelet::onSave, this);
@@ -92,6 +92,11 @@ class FusionNodelet : public ChainNodelet {
   void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
   void onMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<3>(image); }
 
+  void onFlow(const SparseFlowMsg::ConstPtr& flow) { matcher_->add<4>(flow); }
+  void onBlurScore(const BlurScoreMsg::ConstPtr& score) {
+    if (score->sharp) matcher_->add<5>(score);
+  }
+
   void onSet(const Matcher::Set& set) {
     if (const auto dropped = worker_->push(set)) {
       reject(std::get<1>(*dropped)->header, TrackingStatusMsg::DROPPED,
@@ -99,25 +104,12 @@ class FusionNodelet : public ChainNodelet {
     }
   }
 
-  /// A frame that another stage, or this one, has given up. It is reported at once, but told to the
-  /// mapper in the order of the stamps: frames before it may still be on their way.
+  /// A frame that another stage, or this one, has given up.
   void onRejected(const TrackingStatusMsg::ConstPtr& rejected) {
     worker_->post([this, rejected] {
-      publishStatus(now_, rejected->header.stamp, rejected->reason, rejected->outcome);
-      rejected_waiting_[rejected->header.stamp] = outcomeOf(*rejected);
-      if (rejected_waiting_.size() > kMaxRejected) {
-        skipBefore(std::next(rejected_waiting_.begin())->first);
-      }
+      publishStatus(mapper_->skip(toNs(rejected->header.stamp), FrameOutcome::bad_input),
+                    rejected->header.stamp, rejected->reason, rejected->outcome);
     });
-  }
-
-  /// Tells the mapper of the frames given up before this stamp.
-  void skipBefore(const ros::Time& stamp) {
-    const auto end = rejected_waiting_.lower_bound(stamp);
-    for (auto next = rejected_waiting_.begin(); next != end; ++next) {
-      remember(mapper_->skip(toNs(next->first), next->second));
-    }
-    rejected_waiting_.erase(rejected_waiting_.begin(), end);
   }
 
   /// In the worker.
@@ -125,23 +117,22 @@ class FusionNodelet : public ChainNodelet {
     const std_msgs::Header& header = std::get<1>(set)->header;
     guarded(header, [&] { fuse(set); });
     last_ = header.stamp;
-    // Always, since the segmenter may wait. Lost, the view would be of another place.
-    const bool is_lost = now_.state == pf::TrackingState::lost;
-    map_output_->publishView(is_lost ? pf::ModelView() : mapper_->view(), last_, false);
+    map_output_->publishView(mapper_->view(), last_, false);  // always: the segmenter may wait
   }
 
   void fuse(const Matcher::Set& set) {
-    const auto& [info, color, depth, mask] = set;
+    const auto& [info, color, depth, mask, flow, blur] = set;
     if (color->header.stamp < last_) startAnew();
-    skipBefore(color->header.stamp);
-    const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    pf::StaticFrame input;
+    input.frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
-    const FrameStatus status =
-        mapper_->process(frame, cv::countNonZero(people) > 0 ? people : cv::Mat());
-    remember(status);
+    if (cv::countNonZero(people) > 0) input.mask = people;
+    input.flow = fromMessage(*flow);
+    input.forced = blur->forced != 0;
+    const FrameStatus status = mapper_->process(input);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     std::string reason = reasonOf(status);
-    if (isLocated(status)) publishPose(color->header, status, reason);
+    if (status.located) publishPose(color->header, status, reason);
     if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
     map_output_->publishSurfels(mapper_->map(), color->header.stamp, pose_output_->mapFromStart());
     publishStatus(status, color->header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
@@ -157,14 +148,6 @@ class FusionNodelet : public ChainNodelet {
     if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
     if (!reason.empty() && !note.empty()) reason += "; ";
     reason += note;
-  }
-
-  void remember(const FrameStatus& status) {
-    now_ = FrameStatus();
-    now_.outcome = FrameOutcome::bad_input;
-    now_.state = status.state;
-    now_.T_map_camera = status.T_map_camera;
-    now_.surfels = status.surfels;
   }
 
   void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
@@ -196,8 +179,6 @@ class FusionNodelet : public ChainNodelet {
   void clear() {
     mapper_->reset();
     saver_->discard();
-    remember(FrameStatus());
-    rejected_waiting_.clear();
     pose_output_->reset();
     map_output_->reset();
     trajectory_.clear();
@@ -228,16 +209,14 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<MapSaver> saver_;
   std::unique_ptr<pf::Mapper> mapper_;
   pf::Trajectory trajectory_;
-  ros::Time last_;   // the newest frame
-  FrameStatus now_;  // state, pose and size of the map, for frames that are given up
-  std::map<ros::Time, FrameOutcome> rejected_waiting_;  // until the frames before them are mapped
+  ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;
   std::mutex status_mutex_;  // guards status_publisher_, which is advertised late
   ros::Publisher status_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
-  ros::Subscriber rejected_, info_, color_, depth_, mask_;
+  ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_;
   ros::ServiceServer save_service_, reset_service_;
 };
 

@@ -74,6 +74,7 @@ class SegmenterNodelet : public ChainNodelet {
     marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>(topics::kSkeletons, 2);
     picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
     depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
+    flow_publisher_ = handle.advertise<SparseFlowMsg>(topics::kFlow, kInternalQueue);
     mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
   }
 
@@ -102,11 +103,11 @@ class SegmenterNodelet : public ChainNodelet {
     if (background_.stopped()) return;
     const pf::ModelView model = view ? fromMessage(view) : pf::ModelView();
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
-    flow_.advance(frame);
+    const pf::SparseFlow& flow = flow_.advance(frame);
     const pf::Segmentation result = segmenter_->segment(
         frame, flow_, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
-    publish(frame, result, depth, header);
+    publish(frame, result, flow, depth, header);
   }
 
   /// Lossless: the view after the frame before this one, however long it takes.
@@ -136,7 +137,8 @@ class SegmenterNodelet : public ChainNodelet {
   }
 
   void publish(const pf::RgbdFrame& frame, const pf::Segmentation& result,
-               const sensor_msgs::ImageConstPtr& depth, const std_msgs::Header& header) {
+               const pf::SparseFlow& flow, const sensor_msgs::ImageConstPtr& depth,
+               const std_msgs::Header& header) {
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (!mask_publisher_) {
       reject(header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");
@@ -150,6 +152,7 @@ class SegmenterNodelet : public ChainNodelet {
       picture_publisher_.publish(
           toImage(pf::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
     }
+    flow_publisher_.publish(SparseFlowMsg::ConstPtr(toMessage(flow, header)));
     const bool nobody = result.static_depth.data == frame.depth.data;
     depth_publisher_.publish(
         nobody ? depth
@@ -168,7 +171,7 @@ class SegmenterNodelet : public ChainNodelet {
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
   ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
-      mask_publisher_;
+      flow_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.

@@ -11,22 +11,6 @@ namespace posefusion_ros {
 
 using pf::InputError;
 
-namespace {
-
-std::uint8_t stateCode(pf::TrackingState state) {
-  switch (state) {
-    case pf::TrackingState::initializing:
-      return TrackingStatusMsg::INITIALIZING;
-    case pf::TrackingState::tracking:
-      return TrackingStatusMsg::TRACKING;
-    case pf::TrackingState::lost:
-      break;
-  }
-  return TrackingStatusMsg::LOST;
-}
-
-}  // namespace
-
 PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header) {
   PeopleMsg message;
   message.header = header;
@@ -88,15 +72,13 @@ pf::SparseFlow fromMessage(const SparseFlowMsg& message) {
   return flow;
 }
 
-bool isLocated(const pf::FrameStatus& status) { return status.outcome == pf::FrameOutcome::fused; }
-
 TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera) {
   TrackingStatusMsg message;
   message.header = header;
   message.outcome = static_cast<std::uint8_t>(status.outcome);
-  message.state = stateCode(status.state);
-  message.located = static_cast<unsigned char>(isLocated(status));
+  message.state = static_cast<std::uint8_t>(status.state);
+  message.located = static_cast<unsigned char>(status.located);
   message.reason = reasonOf(status);
   message.pose = toPose(T_map_camera);
   const pf::TrackingResult& tracking = status.tracking;
@@ -110,11 +92,6 @@ TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Heade
   message.tracking_ms = status.tracking_ms;
   message.fusion_ms = status.fusion_ms;
   return message;
-}
-
-pf::FrameOutcome outcomeOf(const TrackingStatusMsg& rejected) {
-  return rejected.outcome == TrackingStatusMsg::BLURRED ? pf::FrameOutcome::blurred
-                                                        : pf::FrameOutcome::bad_input;
 }
 
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T) {

@@ -166,10 +166,7 @@ class Feeder {
   }
 
   void onStatus(const TrackingStatusMsg::ConstPtr& status) {
-    static const char* const kNames[] = {"fused",         "bad input",     "blurred",
-                                         "without depth", "not converged", "with few inliers",
-                                         "jumped"};
-    std::string name = status->outcome < std::size(kNames) ? kNames[status->outcome] : "unknown";
+    std::string name(pf::name(static_cast<pf::FrameOutcome>(status->outcome)));
     if (status->outcome == TrackingStatusMsg::DROPPED) name = status->reason;
     if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
     {

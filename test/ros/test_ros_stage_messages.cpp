@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
+#include <map>
 
 #include "../temporary_folder.hpp"
 #include "posefusion_ros/conversions.hpp"
@@ -61,28 +62,41 @@ TEST(StageMessages, FlowGoesThereAndBack) {
 
 TEST(StageMessages, StatusConstantsAreThoseOfTheCore) {
   using pf::FrameOutcome;
-  const auto code = [](FrameOutcome outcome) {
+  using Status = TrackingStatusMsg;
+  const std::map<FrameOutcome, int> outcomes = {
+      {FrameOutcome::fused, Status::FUSED},
+      {FrameOutcome::bad_input, Status::BAD_INPUT},
+      {FrameOutcome::blurred, Status::BLURRED},
+      {FrameOutcome::no_depth, Status::NO_DEPTH},
+      {FrameOutcome::not_converged, Status::NOT_CONVERGED},
+      {FrameOutcome::few_inliers, Status::FEW_INLIERS},
+      {FrameOutcome::degenerate, Status::DEGENERATE},
+      {FrameOutcome::jumped, Status::JUMPED},
+      {FrameOutcome::disagrees, Status::DISAGREES},
+      {FrameOutcome::seen_through, Status::SEEN_THROUGH},
+      {FrameOutcome::unproven, Status::UNPROVEN},
+      {FrameOutcome::forced, Status::FORCED}};
+  for (const auto& [outcome, code] : outcomes) {
     pf::FrameStatus status;
     status.outcome = outcome;
-    return toMessage(status, headerAt(0), status.T_map_camera).outcome;
-  };
-  EXPECT_EQ(code(FrameOutcome::fused), std::uint8_t{TrackingStatusMsg::FUSED});
-  EXPECT_EQ(code(FrameOutcome::bad_input), std::uint8_t{TrackingStatusMsg::BAD_INPUT});
-  EXPECT_EQ(code(FrameOutcome::blurred), std::uint8_t{TrackingStatusMsg::BLURRED});
-  EXPECT_EQ(code(FrameOutcome::no_depth), std::uint8_t{TrackingStatusMsg::NO_DEPTH});
-  EXPECT_EQ(code(FrameOutcome::not_converged), std::uint8_t{TrackingStatusMsg::NOT_CONVERGED});
-  EXPECT_EQ(code(FrameOutcome::few_inliers), std::uint8_t{TrackingStatusMsg::FEW_INLIERS});
-  EXPECT_EQ(code(FrameOutcome::jumped), std::uint8_t{TrackingStatusMsg::JUMPED});
+    EXPECT_EQ(toMessage(status, headerAt(0), status.T_map_camera).outcome, code) << name(outcome);
+  }
+  EXPECT_EQ(name(static_cast<FrameOutcome>(outcomes.size())), "unknown") << "all are listed";
 
   using pf::TrackingState;
-  const auto state = [](TrackingState value) {
+  const std::map<TrackingState, int> states = {{TrackingState::initializing, Status::INITIALIZING},
+                                               {TrackingState::tracking, Status::TRACKING},
+                                               {TrackingState::doubtful, Status::DOUBTFUL},
+                                               {TrackingState::lost, Status::LOST}};
+  for (const auto& [state, code] : states) {
     pf::FrameStatus status;
-    status.state = value;
-    return toMessage(status, headerAt(0), status.T_map_camera).state;
-  };
-  EXPECT_EQ(state(TrackingState::initializing), std::uint8_t{TrackingStatusMsg::INITIALIZING});
-  EXPECT_EQ(state(TrackingState::tracking), std::uint8_t{TrackingStatusMsg::TRACKING});
-  EXPECT_EQ(state(TrackingState::lost), std::uint8_t{TrackingStatusMsg::LOST});
+    status.state = state;
+    status.located = state == TrackingState::doubtful;
+    const Status message = toMessage(status, headerAt(0), status.T_map_camera);
+    EXPECT_EQ(message.state, code) << name(state);
+    EXPECT_EQ(message.located != 0, status.located);
+  }
+  EXPECT_EQ(name(static_cast<TrackingState>(states.size())), "unknown") << "all are listed";
 }
 
 TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
