@@ -58,6 +58,22 @@ class ToolsTest : public testing::Test {
     fs::copy(sequence(), own / name, fs::copy_options::recursive);
     return own / name;
   }
+  /// The same frames over and over: enough for minutes.
+  std::string longSequence() const {
+    const std::string input = copy("long");
+    const auto images = filesIn(input + "/rgb");
+    std::string list;
+    for (int i = 0; i < 20000; ++i) {
+      const std::string name = formatStamp(1'000'000'000LL + i * 33'000'000LL);
+      // There and back, so that the camera never jumps.
+      const int phase = i % (2 * kFrames - 2);
+      const int at = phase < kFrames ? phase : 2 * kFrames - 2 - phase;
+      const std::string image = images[static_cast<std::size_t>(at)].filename().string();
+      list += name + " rgb/" + image + " " + name + " depth/" + image + "\n";
+    }
+    own.write("long/associations.txt", list);
+    return input;
+  }
   static std::string sequence() { return *folder_ / "sequence"; }
 
   int run(std::vector<std::string> arguments, const std::string& name = "posefusion_run") {
@@ -220,19 +236,7 @@ TEST_F(ToolsTest, DamagedFramesAreCountedAndTheRestIsDone) {
 }
 
 TEST_F(ToolsTest, CtrlCEndsItInOrderWithEverythingWritten) {
-  // The same frames over and over: enough for minutes.
-  const std::string input = copy("long");
-  const auto images = filesIn(input + "/rgb");
-  std::string list;
-  for (int i = 0; i < 20000; ++i) {
-    const std::string name = formatStamp(1'000'000'000LL + i * 33'000'000LL);
-    // There and back, so that the camera never jumps.
-    const int phase = i % (2 * kFrames - 2);
-    const int at = phase < kFrames ? phase : 2 * kFrames - 2 - phase;
-    const std::string image = images[static_cast<std::size_t>(at)].filename().string();
-    list += name + " rgb/" + image + " " + name + " depth/" + image + "\n";
-  }
-  own.write("long/associations.txt", list);
+  const std::string input = longSequence();
   for (const int signal : {SIGINT, SIGTERM}) {
     const std::string output = own / ("out" + std::to_string(signal));
     const Program program("posefusion_run",
@@ -255,6 +259,27 @@ TEST_F(ToolsTest, CtrlCEndsItInOrderWithEverythingWritten) {
     EXPECT_TRUE(fs::exists(output + "/people.png"));
     EXPECT_TRUE(fs::exists(output + "/people.json"));
   }
+}
+
+TEST_F(ToolsTest, AKilledRunLeavesTheTrajectorySoFarAndAFinishedOneOnlyTheWholeOne) {
+  const std::string output = own / "out", journal = output + "/trajectory.partial.txt";
+  const Program program("posefusion_run",
+                        {longSequence(), "--detector", "none", "--output", output},
+                        own / "log.txt");
+  const auto lines = [&] {
+    const std::string text = fs::exists(journal) ? readFile(journal) : "";
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  for (int i = 0; i < 600 && lines() < 10; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  program.send(SIGKILL);
+  EXPECT_EQ(program.exitCode(), -SIGKILL);
+  EXPECT_GE(loadTrajectory(journal).size(), 8U);
+  EXPECT_FALSE(fs::exists(output + "/trajectory.txt"));
+  ASSERT_EQ(run({sequence(), "--detector", "none", "--output", own / "finished"}), 0) << said;
+  EXPECT_TRUE(fs::exists(own / "finished/trajectory.txt"));
+  EXPECT_FALSE(fs::exists(own / "finished/trajectory.partial.txt"));
 }
 
 }  // namespace

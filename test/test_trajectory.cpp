@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <filesystem>
 #include <random>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
+#include "posefusion/io/files.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -87,6 +93,86 @@ TEST(Trajectory, ErrorsNameFileAndLine) {
   EXPECT_NE(
       errorOf([&] { loadTrajectory(folder / "none.txt"); }).find("none.txt: cannot be opened"),
       std::string::npos);
+}
+
+StampedPose poseAt(int i) {
+  StampedPose pose;
+  pose.stamp_ns = 1000000000L + i * 33333333L;
+  pose.T_world_camera = expSe3((Vector6d() << 0.1 * i, -1, 2, 0.3, 0.01 * i, -0.2).finished());
+  return pose;
+}
+
+TEST(TrajectoryJournal, AProcessThatIsKilledLosesNoPose) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "trajectory.partial.txt";
+  constexpr int kPoses = 50;
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    TrajectoryJournal journal(path, "camera");
+    for (int i = 0; i < kPoses; ++i) journal.add(poseAt(i));
+    if (write(ready[1], "x", 1) == 1) pause();
+    _exit(1);
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  const Trajectory kept = loadTrajectory(path);
+  ASSERT_EQ(kept.size(), kPoses);
+  for (int i = 0; i < kPoses; ++i) {
+    EXPECT_EQ(kept[i].stamp_ns, poseAt(i).stamp_ns);
+    EXPECT_TRUE(kept[i].T_world_camera.isApprox(poseAt(i).T_world_camera, 1e-7));
+  }
+}
+
+TEST(TrajectoryJournal, SaysTheSameAsTheSavedTrajectoryAndThenGoes) {
+  const TemporaryFolder folder;
+  Trajectory poses;
+  TrajectoryJournal journal(folder / "journal", "camera");
+  for (int i = 0; i < 3; ++i) {
+    poses.push_back(poseAt(i));
+    EXPECT_TRUE(journal.add(poses.back()));
+  }
+  saveTrajectory(folder / "saved", poses, "camera");
+  EXPECT_EQ(readFile(folder / "journal"), readFile(folder / "saved"));
+  journal.remove();
+  EXPECT_FALSE(std::filesystem::exists(folder / "journal"));
+}
+
+TEST(TrajectoryJournal, WhatAKilledProcessLeftIsKept) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "journal";
+  TrajectoryJournal(path, "").add(poseAt(1));
+  TrajectoryJournal(path, "").add(poseAt(2));
+  EXPECT_EQ(loadTrajectory(path).at(0).stamp_ns, poseAt(2).stamp_ns);
+  EXPECT_EQ(loadTrajectory(path + ".old").at(0).stamp_ns, poseAt(1).stamp_ns);
+}
+
+TEST(TrajectoryJournal, AFullDiskLeavesWholeLines) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "journal";
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{}, limit{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  TrajectoryJournal journal(path, "");
+  EXPECT_TRUE(journal.add(poseAt(0)));
+  limit = before;
+  limit.rlim_cur = std::filesystem::file_size(path) + 10;  // as if the disk had no more room
+  setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_FALSE(journal.add(poseAt(1)));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(journal.add(poseAt(2)));
+  const Trajectory kept = loadTrajectory(path);
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[1].stamp_ns, poseAt(2).stamp_ns);
+}
+
+TEST(TrajectoryJournal, AFileThatCannotBeMadeIsNamed) {
+  EXPECT_NE(errorOf([] { TrajectoryJournal("/nowhere/journal", ""); }).find("/nowhere/journal"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -2,18 +2,13 @@
 #pragma once
 
 #include <cv_bridge/cv_bridge.h>
-#include <geometry_msgs/Pose.h>
 #include <ros/time.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
-#include <Eigen/Geometry>
 #include <string>
 
 #include "posefusion/core/frame.hpp"
-#include "posefusion/pose/skeleton.hpp"
-#include "posefusion/slam/mapper.hpp"
-#include "posefusion_ros/messages.hpp"
 
 namespace posefusion_ros {
 
@@ -51,14 +46,5 @@ sensor_msgs::ImagePtr toImage(const cv::Mat& pixels, const std::string& encoding
 
 /// The depth of a frame as a message: 16UC1 where its unit is a millimetre, else 32FC1 metres.
 sensor_msgs::ImagePtr toDepthImage(const pf::RgbdFrame& frame, const std_msgs::Header& header);
-
-PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header);
-pf::People fromMessage(const PeopleMsg& message);
-
-/// `header` has the stamp of the frame and the map frame; `pose` is the camera's in that frame.
-TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
-                            const Eigen::Isometry3d& T_map_camera);
-
-geometry_msgs::Pose toPose(const Eigen::Isometry3d& T);
 
 }  // namespace posefusion_ros

@@ -44,7 +44,7 @@ class InputPairing {
   void addDepth(const sensor_msgs::ImageConstPtr& image);
   void addInfo(const sensor_msgs::CameraInfoConstPtr& info);
 
-  /// What arrived since the last call, for the message that tells what is missing.
+  /// What has arrived so far, for the message that tells what is missing.
   std::string describeArrivals(const std::array<std::string, 3>& topics) const;
 
  private:
@@ -60,7 +60,7 @@ class InputPairing {
   };
 
   void restart();
-  /// Whether a message of this stamp may go on; `late` tells by how much it is behind.
+  /// Whether a message of this stamp may go on; `reason` tells why not.
   bool admit(Stream stream, const ros::Time& stamp, std::string& reason);
   void onSet(const sensor_msgs::ImageConstPtr& color, const sensor_msgs::ImageConstPtr& depth,
              const sensor_msgs::CameraInfoConstPtr& info);

@@ -6,6 +6,7 @@
 #include <posefusion/ModelView.h>
 #include <posefusion/People.h>
 #include <posefusion/Person.h>
+#include <posefusion/SparseFlow.h>
 #include <posefusion/TrackingStatus.h>
 
 namespace posefusion_ros {
@@ -16,6 +17,7 @@ using KeypointMsg = posefusion::Keypoint;
 using ModelViewMsg = posefusion::ModelView;
 using PeopleMsg = posefusion::People;
 using PersonMsg = posefusion::Person;
+using SparseFlowMsg = posefusion::SparseFlow;
 using TrackingStatusMsg = posefusion::TrackingStatus;
 
 }  // namespace posefusion_ros

@@ -20,6 +20,7 @@ constexpr char kPeople[] = "people";
 // Segmenter.
 constexpr char kMask[] = "mask";
 constexpr char kStaticDepth[] = "static_depth";
+constexpr char kFlow[] = "flow";
 constexpr char kPeopleUsed[] = "people_used";
 constexpr char kSkeletons[] = "skeletons";
 constexpr char kPeopleImage[] = "people_image";

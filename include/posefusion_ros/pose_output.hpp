@@ -20,13 +20,13 @@ namespace posefusion_ros {
 struct PoseOutputSettings {
   bool publish_tf = true;
   std::string map_frame;
-  std::string odom_frame;     ///< empty: nobody owns odometry, map -> base is published
-  std::string base_frame;     ///< empty: the optical frame of the camera
-  double tf_timeout_s = 0.1;  ///< wall time
+  std::string odom_frame;  ///< empty: nobody owns odometry, map -> base is published
+  std::string base_frame;  ///< empty: the optical frame of the camera
+  LookupSettings lookup;
   double path_period_s = 1.0;
 };
 
-PoseOutputSettings readPoseOutput(Parameters& parameters);
+PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless);
 
 /// Publishes where the camera is: TF, odometry, pose and path, in a map frame with z up.
 ///
@@ -37,9 +37,10 @@ class PoseOutput {
  public:
   PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings);
 
-  /// Publishes the pose of a fused frame; `image` is the header of its colour image. Returns what
-  /// is missing (a transform), empty when all is well; nothing is published then.
-  std::string publish(const std_msgs::Header& image, const pf::FrameStatus& status);
+  /// Publishes the pose of a located frame; `image` is the header of its colour image. False when
+  /// nothing could be published, for want of a transform. `note`: what is missing, or which
+  /// transform is older than the image; empty when all is well.
+  bool publish(const std_msgs::Header& image, const pf::FrameStatus& status, std::string& note);
 
   /// The core's map in the map frame; nothing until the first pose could be published.
   const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
@@ -48,15 +49,15 @@ class PoseOutput {
 
  private:
   struct Links;  // camera and odometry of the robot at the stamp
-  bool look(const std_msgs::Header& image, Links& links, std::string& error) const;
+  bool look(const std_msgs::Header& image, Links& links, std::string& note);
   void sendTransform(const ros::Time& stamp, const std::string& child, const Eigen::Isometry3d& T);
-  void sendOdometry(const ros::Time& stamp, const std::string& base, const Eigen::Isometry3d& T,
-                    const pf::FrameStatus& status);
+  void sendOdometry(const ros::Time& stamp, const Links& links, const Eigen::Isometry3d& T_map_base,
+                    const pf::Matrix6d& covariance);
   void extendPath(const geometry_msgs::PoseStamped& pose);
 
   PoseOutputSettings settings_;
   ros::Publisher odometry_, pose_, path_publisher_;
-  std::unique_ptr<TransformLookup> lookup_;  // only where a frame has to be looked up
+  std::unique_ptr<ListeningLookup> lookup_;  // only where a frame has to be looked up
   tf2_ros::TransformBroadcaster broadcaster_;
   std::optional<Eigen::Isometry3d> T_map_start_;
   std::optional<Eigen::Isometry3d> T_map_base_before_;

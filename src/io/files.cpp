@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/io/files.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,6 +16,23 @@ namespace pf {
 namespace {
 
 std::string reason() { return errno != 0 ? std::strerror(errno) : "unknown reason"; }
+
+/// Waits until a file, or the names in a folder, are on the disk. False with errno set.
+bool sync(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  // Some file systems cannot do it: there the rename alone has to do.
+  const bool done = fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP;
+  const int error = errno;
+  close(fd);
+  errno = error;
+  return done;
+}
+
+std::string folderOf(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
 
 }  // namespace
 
@@ -32,14 +50,20 @@ AtomicFile::~AtomicFile() {
   std::remove(temporary_.c_str());
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Until until) {
   errno = 0;
   stream_.close();
-  if (!stream_) throw InputError(path_ + ": cannot be written: " + reason());
+  // Bytes before name: a name that comes first may stand for an empty file after a power cut.
+  if (!stream_ || (until == Until::disk && !sync(temporary_))) {
+    throw InputError(path_ + ": cannot be written: " + reason());
+  }
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     throw InputError(path_ + ": cannot be replaced: " + reason());
   }
   temporary_.clear();
+  if (until == Until::disk && !sync(folderOf(path_))) {
+    throw InputError(path_ + ": may not be on the disk: " + reason());
+  }
 }
 
 std::string readFile(const std::string& path) {

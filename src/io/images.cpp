@@ -61,7 +61,7 @@ void savePng(const std::string& path, const cv::Mat& image) {
   AtomicFile file(path);
   file.stream().write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));
-  file.commit();
+  file.commit(AtomicFile::Until::system);
 }
 
 }  // namespace pf

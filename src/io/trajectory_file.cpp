@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/io/trajectory_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cerrno>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 #include "posefusion/core/error.hpp"
@@ -47,6 +51,19 @@ StampedPose parseLine(std::string line) {
   return pose;
 }
 
+std::string headOf(const std::string& comment) {
+  return (comment.empty() ? "" : "# " + comment + '\n') + "# timestamp tx ty tz qx qy qz qw\n";
+}
+
+void writeLine(std::ostream& out, const StampedPose& pose) {
+  const Eigen::Vector3d t = pose.T_world_camera.translation();
+  Eigen::Quaterniond q(pose.T_world_camera.linear());
+  q.normalize();
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  out << std::setprecision(9) << formatStamp(pose.stamp_ns) << ' ' << t.x() << ' ' << t.y() << ' '
+      << t.z() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
+}
+
 }  // namespace
 
 Trajectory loadTrajectory(const std::string& path) {
@@ -70,18 +87,60 @@ Trajectory loadTrajectory(const std::string& path) {
 void saveTrajectory(const std::string& path, const Trajectory& trajectory,
                     const std::string& comment) {
   AtomicFile file(path);
-  std::ostream& out = file.stream();
-  if (!comment.empty()) out << "# " << comment << '\n';
-  out << "# timestamp tx ty tz qx qy qz qw\n" << std::setprecision(9);
-  for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d t = pose.T_world_camera.translation();
-    Eigen::Quaterniond q(pose.T_world_camera.linear());
-    q.normalize();
-    if (q.w() < 0) q.coeffs() = -q.coeffs();
-    out << formatStamp(pose.stamp_ns) << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' '
-        << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
-  }
+  file.stream() << headOf(comment);
+  for (const StampedPose& pose : trajectory) writeLine(file.stream(), pose);
   file.commit();
+}
+
+TrajectoryJournal::TrajectoryJournal(const std::string& path, const std::string& comment)
+    : path_(path), synced_(std::chrono::steady_clock::now()) {
+  std::error_code ignored;
+  std::filesystem::rename(path, path + ".old", ignored);  // most often there is none
+  fd_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0 || !append(headOf(comment))) {
+    const std::string reason = std::strerror(errno);
+    if (fd_ >= 0) close(fd_);
+    throw InputError(path + ": cannot be written: " + reason);
+  }
+}
+
+TrajectoryJournal::~TrajectoryJournal() {
+  if (syncing_.valid()) syncing_.wait();
+  if (fd_ >= 0) close(fd_);
+}
+
+bool TrajectoryJournal::add(const StampedPose& pose) {
+  std::ostringstream line;
+  writeLine(line, pose);
+  if (fd_ < 0 || !append(line.str())) return false;
+  syncNowAndThen();
+  return true;
+}
+
+bool TrajectoryJournal::append(const std::string& text) {
+  const ssize_t written = write(fd_, text.data(), text.size());
+  if (written == static_cast<ssize_t>(text.size())) {
+    size_ += written;
+    return true;
+  }
+  const int error = written < 0 ? errno : ENOSPC;
+  if (ftruncate(fd_, size_) == 0) lseek(fd_, size_, SEEK_SET);  // no half lines
+  errno = error;
+  return false;
+}
+
+void TrajectoryJournal::syncNowAndThen() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - synced_ < std::chrono::seconds(1)) return;
+  if (syncing_.valid() && syncing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;  // a slow disk
+  }
+  synced_ = now;
+  syncing_ = std::async(std::launch::async, [fd = fd_] { fdatasync(fd); });
+}
+
+void TrajectoryJournal::remove() {
+  if (fd_ >= 0) std::remove(path_.c_str());
 }
 
 }  // namespace pf

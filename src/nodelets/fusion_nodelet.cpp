@@ -12,6 +12,7 @@
 #include "posefusion_ros/map_saver.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/trigger.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -29,27 +30,30 @@ class FusionNodelet : public ChainNodelet {
  public:
   ~FusionNodelet() override {
     stopWaiting();
-    for (ros::Subscriber* topic : {&rejected_, &info_, &color_, &depth_, &mask_}) topic->shutdown();
+    for (ros::Subscriber* topic :
+         {&rejected_, &info_, &color_, &depth_, &mask_, &flow_, &blur_score_}) {
+      topic->shutdown();
+    }
     save_service_.shutdown();
     reset_service_.shutdown();
     worker_.reset();
     if (!saver_ || !saver_->isOn()) return;  // start() may have failed anywhere
-    const std::string said = saver_->tryToSave(mapper_->map(), trajectory_);
+    const std::string said = saver_->finish(mapper_->map(), trajectory_);
     // The log is closed already when the whole manager ends.
     std::printf("%s: %s\n", getName().c_str(), said.c_str());
     std::fflush(stdout);
   }
 
  private:
-  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image>;
+  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image, SparseFlowMsg, BlurScoreMsg>;
 
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
     const pf::Config config = parameters.config({"frame", "tracking", "map"});
-    const PoseOutputSettings poses = readPoseOutput(parameters);
-    map_frame_ = poses.map_frame;
     const bool lossless = parameters.flag("lossless", false);
+    const PoseOutputSettings poses = readPoseOutput(parameters, lossless);
+    map_frame_ = poses.map_frame;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     mapper_ = std::make_unique<pf::Mapper>(config);
     saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
@@ -67,6 +71,9 @@ class FusionNodelet : public ChainNodelet {
     color_ = handle.subscribe(topics::kSharpColor, kInternalQueue, &FusionNodelet::onColor, this);
     depth_ = handle.subscribe(topics::kStaticDepth, kInternalQueue, &FusionNodelet::onDepth, this);
     mask_ = handle.subscribe(topics::kMask, kInternalQueue, &FusionNodelet::onMask, this);
+    flow_ = handle.subscribe(topics::kFlow, kInternalQueue, &FusionNodelet::onFlow, this);
+    blur_score_ =
+        handle.subscribe(topics::kBlurScore, kInternalQueue, &FusionNodelet::onBlurScore, this);
     // Services wait for the worker: in a queue of their own.
     ros::NodeHandle& services = getMTPrivateNodeHandle();
     save_service_ = services.advertiseService("save_map", &FusionNodelet::onSave, this);
@@ -85,6 +92,11 @@ class FusionNodelet : public ChainNodelet {
   void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
   void onMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<3>(image); }
 
+  void onFlow(const SparseFlowMsg::ConstPtr& flow) { matcher_->add<4>(flow); }
+  void onBlurScore(const BlurScoreMsg::ConstPtr& score) {
+    if (score->sharp) matcher_->add<5>(score);
+  }
+
   void onSet(const Matcher::Set& set) {
     if (const auto dropped = worker_->push(set)) {
       reject(std::get<1>(*dropped)->header, TrackingStatusMsg::DROPPED,
@@ -95,8 +107,8 @@ class FusionNodelet : public ChainNodelet {
   /// A frame that another stage, or this one, has given up.
   void onRejected(const TrackingStatusMsg::ConstPtr& rejected) {
     worker_->post([this, rejected] {
-      publishStatus(mapper_->skip(0, FrameOutcome::bad_input), rejected->header.stamp,
-                    rejected->reason, rejected->outcome);
+      publishStatus(mapper_->skip(toNs(rejected->header.stamp), FrameOutcome::bad_input),
+                    rejected->header.stamp, rejected->reason, rejected->outcome);
     });
   }
 
@@ -109,22 +121,33 @@ class FusionNodelet : public ChainNodelet {
   }
 
   void fuse(const Matcher::Set& set) {
-    const auto& [info, color, depth, mask] = set;
+    const auto& [info, color, depth, mask, flow, blur] = set;
     if (color->header.stamp < last_) startAnew();
-    const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
+    pf::StaticFrame input;
+    input.frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
-    const FrameStatus status =
-        mapper_->process({frame, cv::countNonZero(people) > 0 ? people : cv::Mat(), {}});
+    if (cv::countNonZero(people) > 0) input.mask = people;
+    input.flow = fromMessage(*flow);
+    input.forced = blur->forced != 0;
+    const FrameStatus status = mapper_->process(input);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     std::string reason = reasonOf(status);
-    if (status.outcome == FrameOutcome::fused) {
-      trajectory_.push_back({status.stamp_ns, status.T_map_camera});
-      reason = pose_output_->publish(color->header, status);
-      if (!reason.empty()) reason = "fused, but no pose published: " + reason;
-    }
+    if (status.located) publishPose(color->header, status, reason);
     if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
     map_output_->publishSurfels(mapper_->map(), color->header.stamp, pose_output_->mapFromStart());
     publishStatus(status, color->header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
+  }
+
+  /// Keeps and publishes the pose of a located frame; what goes wrong is added to `reason`.
+  void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
+    const pf::StampedPose pose{status.stamp_ns, status.T_map_camera};
+    trajectory_.push_back(pose);
+    const std::string unwritten = saver_->note(pose);
+    if (!unwritten.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unwritten.c_str());
+    std::string note;
+    if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
+    if (!reason.empty() && !note.empty()) reason += "; ";
+    reason += note;
   }
 
   void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
@@ -144,13 +167,18 @@ class FusionNodelet : public ChainNodelet {
   /// The bag is played again: what there was is kept in a folder of its own.
   void startAnew() {
     if (saver_->isOn() && !trajectory_.empty()) {
-      NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
+      try {
+        NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
+      } catch (const std::exception& error) {  // the new map is worth more than the old one
+        NODELET_ERROR("the map before the jump is lost: %s", error.what());
+      }
     }
     clear();
   }
 
   void clear() {
     mapper_->reset();
+    saver_->discard();
     pose_output_->reset();
     map_output_->reset();
     trajectory_.clear();
@@ -188,7 +216,7 @@ class FusionNodelet : public ChainNodelet {
   ros::Publisher status_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
-  ros::Subscriber rejected_, info_, color_, depth_, mask_;
+  ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_;
   ros::ServiceServer save_service_, reset_service_;
 };
 

@@ -11,6 +11,7 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/worker.hpp"
 
 namespace posefusion_ros {

@@ -14,6 +14,7 @@
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/skeleton_markers.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transforms.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -43,9 +44,9 @@ class SegmenterNodelet : public ChainNodelet {
     lossless_ = parameters.flag("lossless", false);
     up_frame_ = plainFrame(parameters.text("up_frame", ""));
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
-    const double tf_timeout_s = parameters.number("tf_timeout_s", 0.1, {0.0, 10.0});
+    const LookupSettings lookup = readLookup(parameters, lossless_);
     report(parameters);
-    if (!up_frame_.empty()) lookup_ = std::make_unique<TransformLookup>(tf_timeout_s);
+    if (!up_frame_.empty()) lookup_ = std::make_unique<ListeningLookup>(lookup);
 
     matcher_ =
         std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });
@@ -73,6 +74,7 @@ class SegmenterNodelet : public ChainNodelet {
     marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>(topics::kSkeletons, 2);
     picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
     depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
+    flow_publisher_ = handle.advertise<SparseFlowMsg>(topics::kFlow, kInternalQueue);
     mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
   }
 
@@ -101,11 +103,11 @@ class SegmenterNodelet : public ChainNodelet {
     if (background_.stopped()) return;
     const pf::ModelView model = view ? fromMessage(view) : pf::ModelView();
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
-    flow_.advance(frame);
+    const pf::SparseFlow& flow = flow_.advance(frame);
     const pf::Segmentation result = segmenter_->segment(
         frame, flow_, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
-    publish(frame, result, depth, header);
+    publish(frame, result, flow, depth, header);
   }
 
   /// Lossless: the view after the frame before this one, however long it takes.
@@ -121,20 +123,22 @@ class SegmenterNodelet : public ChainNodelet {
     return background_.newest();
   }
 
-  std::optional<Eigen::Vector3d> upOf(const std_msgs::Header& header) const {
+  std::optional<Eigen::Vector3d> upOf(const std_msgs::Header& header) {
     if (!lookup_) return std::nullopt;
-    std::string error;
-    const auto T = lookup_->find(plainFrame(header.frame_id), up_frame_, header.stamp, error);
+    std::string note;
+    const auto T = (*lookup_)->find(plainFrame(header.frame_id), up_frame_, header.stamp, note);
     if (!T) {
       NODELET_WARN_THROTTLE(5.0, "gravity unknown, horizontal means in the image plane: %s",
-                            error.c_str());
+                            note.c_str());
       return std::nullopt;
     }
+    if (!note.empty()) NODELET_WARN_THROTTLE(30.0, "%s", note.c_str());
     return T->linear() * Eigen::Vector3d::UnitZ();
   }
 
   void publish(const pf::RgbdFrame& frame, const pf::Segmentation& result,
-               const sensor_msgs::ImageConstPtr& depth, const std_msgs::Header& header) {
+               const pf::SparseFlow& flow, const sensor_msgs::ImageConstPtr& depth,
+               const std_msgs::Header& header) {
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (!mask_publisher_) {
       reject(header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");
@@ -148,6 +152,7 @@ class SegmenterNodelet : public ChainNodelet {
       picture_publisher_.publish(
           toImage(pf::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
     }
+    flow_publisher_.publish(SparseFlowMsg::ConstPtr(toMessage(flow, header)));
     const bool nobody = result.static_depth.data == frame.depth.data;
     depth_publisher_.publish(
         nobody ? depth
@@ -159,14 +164,14 @@ class SegmenterNodelet : public ChainNodelet {
 
   bool lossless_ = false;
   std::string up_frame_;
-  std::unique_ptr<TransformLookup> lookup_;
+  std::unique_ptr<ListeningLookup> lookup_;
   std::unique_ptr<pf::PeopleSegmenter> segmenter_;
   pf::FlowTracker flow_;
   ros::Time last_;  // the frame before; zero at the start
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
   ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
-      mask_publisher_;
+      flow_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.

@@ -16,6 +16,7 @@
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/camera_file.hpp"
 #include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "stamp_pairer.hpp"
 
 namespace posefusion_ros {

@@ -52,7 +52,7 @@ void ChainNodelet::guarded(const std_msgs::Header& header, const std::function<v
 void ChainNodelet::report(const Parameters& parameters) {
   NODELET_INFO("%s", parameters.effective().c_str());
   for (const std::string& name : parameters.unknown()) {
-    NODELET_WARN("parameter %s is none of posefusion and has no effect", name.c_str());
+    NODELET_WARN("unknown parameter %s: it has no effect", name.c_str());
   }
 }
 

@@ -22,7 +22,7 @@ void copyPlane(const cv::Mat& plane, const std_msgs::Header& header, sensor_msgs
 }
 
 cv::Mat planeOf(const sensor_msgs::Image& image, const ModelViewMsg::ConstPtr& owner,
-                const std::string& encoding = TYPE_32FC1) {
+                const std::string& encoding) {
   try {
     if (image.encoding == encoding) return cv_bridge::toCvShare(image, owner)->image;
   } catch (const cv_bridge::Exception& error) {
@@ -41,10 +41,6 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
   message->camera = toCameraInfo(view.camera, header);
   Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
   copyPlane(view.depth_m, header, message->depth);
-  copyPlane(view.normal_x, header, message->normal_x);
-  copyPlane(view.normal_y, header, message->normal_y);
-  copyPlane(view.normal_z, header, message->normal_z);
-  copyPlane(view.intensity, header, message->intensity);
   copyPlane(view.stable, header, message->stable);
   return message;
 }
@@ -56,11 +52,7 @@ pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
   view.camera = toCamera(message->camera, false);
   view.T_map_camera.matrix().topRows<3>() =
       Eigen::Map<const RowMajor34>(message->map_from_camera.data());
-  view.depth_m = planeOf(message->depth, message);
-  view.normal_x = planeOf(message->normal_x, message);
-  view.normal_y = planeOf(message->normal_y, message);
-  view.normal_z = planeOf(message->normal_z, message);
-  view.intensity = planeOf(message->intensity, message);
+  view.depth_m = planeOf(message->depth, message, TYPE_32FC1);
   view.stable = planeOf(message->stable, message, TYPE_8UC1);
   return view;
 }

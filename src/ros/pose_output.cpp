@@ -8,6 +8,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -24,13 +25,13 @@ struct PoseOutput::Links {
   Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();
 };
 
-PoseOutputSettings readPoseOutput(Parameters& parameters) {
+PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless) {
   PoseOutputSettings settings;
   settings.publish_tf = parameters.flag("publish_tf", settings.publish_tf);
   settings.map_frame = plainFrame(parameters.text("map_frame", frames::kMap));
   settings.odom_frame = plainFrame(parameters.text("odom_frame", ""));
   settings.base_frame = plainFrame(parameters.text("base_frame", ""));
-  settings.tf_timeout_s = parameters.number("tf_timeout_s", settings.tf_timeout_s, {0.0, 10.0});
+  settings.lookup = readLookup(parameters, lossless);
   settings.path_period_s =
       parameters.number("path_period_s", settings.path_period_s, {0.0, 3600.0});
   return settings;
@@ -42,7 +43,7 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
       pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kQueue)),
       path_publisher_(handle.advertise<nav_msgs::Path>(topics::kPath, 1, true)) {
   if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
-    lookup_ = std::make_unique<TransformLookup>(settings.tf_timeout_s);
+    lookup_ = std::make_unique<ListeningLookup>(settings.lookup);
   }
   reset();
 }
@@ -55,26 +56,29 @@ void PoseOutput::reset() {
   path_sent_ = ros::Time();
 }
 
-bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& error) const {
+bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& note) {
   const std::string camera = plainFrame(image.frame_id);
   links.base = settings_.base_frame.empty() ? camera : settings_.base_frame;
   if (links.base != camera) {
-    const auto T = lookup_->find(links.base, camera, image.stamp, error);
+    const auto T = (*lookup_)->find(links.base, camera, image.stamp, note);
     if (!T) return false;
     links.T_base_camera = *T;
   }
   if (!settings_.odom_frame.empty()) {
-    const auto T = lookup_->find(settings_.odom_frame, links.base, image.stamp, error);
+    std::string of_odometry;
+    const auto T = (*lookup_)->find(settings_.odom_frame, links.base, image.stamp, of_odometry);
+    if (!of_odometry.empty()) note = of_odometry;
     if (!T) return false;
     links.T_odom_base = *T;
   }
   return true;
 }
 
-std::string PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& status) {
+bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& status,
+                         std::string& note) {
   Links links;
-  std::string error;
-  if (!look(image, links, error)) return error;
+  note.clear();
+  if (!look(image, links, note)) return false;
   const bool has_robot = !settings_.base_frame.empty() || !settings_.odom_frame.empty();
   if (!T_map_start_) {
     const Eigen::Isometry3d T_map_camera =
@@ -88,14 +92,14 @@ std::string PoseOutput::publish(const std_msgs::Header& image, const pf::FrameSt
     sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
                   has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
   }
-  sendOdometry(image.stamp, links.base, T_map_base, status);
+  sendOdometry(image.stamp, links, T_map_base, status.tracking.covariance);
   geometry_msgs::PoseStamped pose;
   pose.header.stamp = image.stamp;
   pose.header.frame_id = settings_.map_frame;
   pose.pose = toPose(T_map_base);
   pose_.publish(pose);
   extendPath(pose);
-  return {};
+  return true;
 }
 
 void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
@@ -107,20 +111,15 @@ void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
   broadcaster_.sendTransform(message);
 }
 
-void PoseOutput::sendOdometry(const ros::Time& stamp, const std::string& base,
-                              const Eigen::Isometry3d& T_map_base, const pf::FrameStatus& status) {
+void PoseOutput::sendOdometry(const ros::Time& stamp, const Links& links,
+                              const Eigen::Isometry3d& T_map_base, const pf::Matrix6d& covariance) {
   nav_msgs::Odometry odometry;
   odometry.header.stamp = stamp;
   odometry.header.frame_id = settings_.map_frame;
-  odometry.child_frame_id = base;
+  odometry.child_frame_id = links.base;
   odometry.pose.pose = toPose(T_map_base);
-  // The tracker's covariance is in the camera's axes; ROS wants those of the map.
-  pf::Matrix6d rotation = pf::Matrix6d::Zero();
-  const Eigen::Matrix3d R = (*T_map_start_ * status.T_map_camera).linear();
-  rotation.topLeftCorner<3, 3>() = R;
-  rotation.bottomRightCorner<3, 3>() = R;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
-      rotation * status.tracking.covariance * rotation.transpose();
+      poseCovariance(T_map_base, links.T_base_camera, covariance);
   if (T_map_base_before_ && stamp > before_) {
     const pf::Vector6d twist =
         pf::logSe3(T_map_base_before_->inverse() * T_map_base) / (stamp - before_).toSec();

@@ -4,6 +4,10 @@
 #include <ros/init.h>
 #include <tf2_eigen/tf2_eigen.h>
 
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
 namespace posefusion_ros {
 namespace {
 
@@ -21,19 +25,62 @@ Eigen::Isometry3d bodyFromOptical() {
   return T;
 }
 
+pf::Matrix6d poseCovariance(const Eigen::Isometry3d& T_parent_body,
+                            const Eigen::Isometry3d& T_body_camera, const pf::Matrix6d& camera) {
+  // The body's motion in its own axes, then turned into the axes of the parent.
+  const Eigen::Matrix3d R = (T_parent_body * T_body_camera).linear();
+  pf::Matrix6d J = pf::Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = R;
+  J.topRightCorner<3, 3>() =
+      T_parent_body.linear() * pf::hat(T_body_camera.translation()) * T_body_camera.linear();
+  J.bottomRightCorner<3, 3>() = R;
+  return J * camera * J.transpose();
+}
+
+LookupSettings readLookup(Parameters& parameters, bool lossless) {
+  LookupSettings settings;
+  settings.timeout_s = parameters.number("tf_timeout_s", settings.timeout_s, {0.0, 10.0});
+  settings.max_age_s = parameters.number("tf_max_age_s", settings.max_age_s, {0.0, 10.0});
+  settings.exact = lossless;
+  return settings;
+}
+
 std::optional<Eigen::Isometry3d> TransformLookup::find(const std::string& target,
                                                        const std::string& source,
-                                                       const ros::Time& stamp,
-                                                       std::string& error) const {
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(timeout_s_);
-  while (!buffer_.canTransform(target, source, stamp) && ros::WallTime::now() < end && ros::ok()) {
+                                                       const ros::Time& stamp, std::string& note) {
+  bool& waits = waits_.try_emplace({target, source}, true).first->second;
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(settings_.timeout_s);
+  auto T = look(target, source, stamp, note);
+  while (!T && waits && ros::WallTime::now() < end && !ros::isShuttingDown()) {
     ros::WallDuration(kPollS).sleep();
+    T = look(target, source, stamp, note);
   }
+  waits = settings_.exact && T.has_value();
+  return T;
+}
+
+std::optional<Eigen::Isometry3d> TransformLookup::look(const std::string& target,
+                                                       const std::string& source,
+                                                       const ros::Time& stamp,
+                                                       std::string& note) const {
+  note.clear();
   try {
     return tf2::transformToEigen(buffer_.lookupTransform(target, source, stamp));
   } catch (const tf2::TransformException& exception) {
-    error = "no transform from " + source + " to " + target + ": " + exception.what();
-    return std::nullopt;
+    note = "no transform from " + source + " to " + target + ": " + exception.what();
+  }
+  if (settings_.exact) return std::nullopt;
+  try {
+    const auto newest = buffer_.lookupTransform(target, source, ros::Time(0));
+    const double age_s = (stamp - newest.header.stamp).toSec();
+    if (std::abs(age_s) > settings_.max_age_s) return std::nullopt;
+    std::ostringstream text;
+    text << "the transform from " << source << " to " << target << " is " << std::fixed
+         << std::setprecision(3) << age_s << " s older than the image";
+    note = text.str();
+    return tf2::transformToEigen(newest);
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;  // the note says why
   }
 }
 

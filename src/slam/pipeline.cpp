@@ -48,6 +48,7 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   out.segmentation_ms = watch.lapMs();
   StaticFrame still{frame, out.segmentation.mask, out.flow};
   still.frame.depth = out.segmentation.static_depth;
+  still.forced = out.seen.blur.forced;
   out.status = mapper_.process(still);
   return out;
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_feeder: plays a recording into the chain, frame by frame as it is done with them
-// (lossless) or in real time, and ends when the last frame has been reported.
+// (lossless) or in real time, and ends when the last frame has been reported. Tells what became of
+// the frames and, in real time, how long their transforms took.
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <chrono>
+#include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -14,8 +17,10 @@
 #include "posefusion_ros/bag_source.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/credit_window.hpp"
+#include "posefusion_ros/latency.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transform_replay.hpp"
 
 namespace posefusion_ros {
@@ -55,7 +60,7 @@ FeederSettings readSettings() {
   s.input.topics.depth = parameters.text("depth_topic", "");
   s.input.topics.camera_info = parameters.text("camera_info_topic", "");
   for (const std::string& name : parameters.unknown()) {
-    ROS_WARN("parameter %s is none of the feeder and has no effect", name.c_str());
+    ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
   }
   return s;
 }
@@ -70,6 +75,9 @@ class Feeder {
     depth_ = handle_.advertise<sensor_msgs::Image>(topics::kDepth, kQueue);
     color_ = handle_.advertise<sensor_msgs::Image>(topics::kColor, kQueue);
     status_ = handle_.subscribe(topics::kStatus, 1000, &Feeder::onStatus, this);
+    if (!settings.lossless && !settings.tf) {
+      tf_ = handle_.subscribe("/tf", 1000, &Feeder::onTransforms, this);
+    }
     spinner_.start();
   }
 
@@ -108,6 +116,11 @@ class Feeder {
     text << sent_ << " frames sent";
     for (const auto& [reason, count] : outcomes_) text << ", " << count << " " << reason;
     if (window_.underWay() > 0) text << ", " << window_.underWay() << " without a status";
+    if (latency_.count() > 0) {
+      text << std::fixed << std::setprecision(1) << "; from frame to TF "
+           << 1e3 * latency_.quantile(0.5) << " ms median, " << 1e3 * latency_.quantile(0.99)
+           << " ms 99 %";
+    }
     if (unreadable_ > 0) text << ", " << unreadable_ << " unreadable ones left out";
     return text.str();
   }
@@ -144,6 +157,7 @@ class Feeder {
     rosgraph_msgs::Clock clock;
     clock.clock = header.stamp;
     clock_.publish(clock);
+    latency_.sent(frame.stamp_ns, steady_clock::now());
     window_.sent(frame.stamp_ns);
     ++sent_;
     info_.publish(toCameraInfo(frame.camera, header));
@@ -152,11 +166,8 @@ class Feeder {
   }
 
   void onStatus(const TrackingStatusMsg::ConstPtr& status) {
-    static const char* const kNames[] = {"fused",         "bad input",     "blurred",
-                                         "without depth", "not converged", "with few inliers",
-                                         "jumped"};
-    std::string name = status->outcome < std::size(kNames) ? kNames[status->outcome] : "unknown";
-    if (status->outcome == TrackingStatusMsg::DROPPED) name = "dropped";
+    std::string name(pf::name(static_cast<pf::FrameOutcome>(status->outcome)));
+    if (status->outcome == TrackingStatusMsg::DROPPED) name = status->reason;
     if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
     {
       const std::lock_guard<std::mutex> lock(outcome_mutex_);
@@ -165,6 +176,12 @@ class Feeder {
     if (!window_.reported(toNs(status->header.stamp))) {
       ROS_WARN("a status for stamp %u.%09u, of which no frame is under way",
                status->header.stamp.sec, status->header.stamp.nsec);
+    }
+  }
+
+  void onTransforms(const tf2_msgs::TFMessage::ConstPtr& message) {
+    for (const auto& transform : message->transforms) {
+      latency_.arrived(toNs(transform.header.stamp), steady_clock::now());
     }
   }
 
@@ -178,12 +195,13 @@ class Feeder {
   ros::NodeHandle handle_;
   std::unique_ptr<TransformReplay> transforms_;
   CreditWindow window_;
+  LatencyMeter latency_;
   int sent_ = 0;
   int unreadable_ = 0;
   std::mutex outcome_mutex_;
   std::map<std::string, int> outcomes_;
   ros::Publisher clock_, info_, depth_, color_;
-  ros::Subscriber status_;
+  ros::Subscriber status_, tf_;
   ros::AsyncSpinner spinner_;
 };
 

@@ -24,6 +24,8 @@
 namespace pf {
 namespace {
 
+constexpr char kJournal[] = "trajectory.partial.txt";  // while the run lasts
+
 volatile std::sig_atomic_t stop_requested = 0;  // the signal that came
 
 /// The first Ctrl-C ends the run in order; the second one ends the process.
@@ -69,16 +71,21 @@ void sayLeftOut(const InputReport& report, Progress& progress) {
 /// Runs the chain; what stops it early (a damaged file) is returned, to be thrown once all is
 /// written.
 std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipeline& pipeline,
-                           RunReport& report) {
+                           RunReport& report, TrajectoryJournal& journal) {
   RunObservers observers(options, pipeline.mapper().map());
   const std::size_t limit = options.max_frames > 0 ? options.max_frames : SIZE_MAX;
   Progress progress(std::min(source.frameCount(), limit));
   std::exception_ptr failure;
-  bool full = false;
+  bool full = false, disk_full = false;
   try {
     runPipeline(source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
       report.add(frame);
       observers.add(frame);
+      if (hasPose(frame.status) &&
+          !journal.add({frame.status.stamp_ns, frame.status.T_map_camera}) &&
+          !std::exchange(disk_full, true)) {
+        progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
+      }
       if (!defect.empty()) {
         progress.say("frame left out: " + defect);
       } else if (frame.status.outcome == FrameOutcome::bad_input) {
@@ -114,8 +121,10 @@ int run(int argc, char** argv) {
   requireOtherFolder(options);
   makeFolder(options.output);
   stopOnSignals();
-  const auto failure = process(options, *source, pipeline, report);
+  TrajectoryJournal journal(options.output + "/" + kJournal, "the run is not finished");
+  const auto failure = process(options, *source, pipeline, report, journal);
   report.write(options.output, pipeline.mapper().map());
+  journal.remove();
   const int signal = stop_requested;
   if (signal != 0) std::cout << "interrupted: these are the results so far\n";
   std::cout << report.table() << "results  " << options.output << "\n";

@@ -16,6 +16,7 @@
 #include "posefusion/core/stamps.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "simulator/truth.hpp"
 
 namespace pf {

@@ -12,6 +12,7 @@
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 namespace {

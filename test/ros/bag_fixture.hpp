@@ -12,6 +12,7 @@
 #include "../temporary_folder.hpp"
 #include "posefusion_ros/bag_source.hpp"
 #include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 

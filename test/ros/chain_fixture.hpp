@@ -19,6 +19,7 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/stage_messages.hpp"
 #include "synthetic/sequence.hpp"
 
 namespace posefusion_ros {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames and settings that are no good.
+#include <geometry_msgs/PoseStamped.h>
 #include <gtest/gtest.h>
 
 #include "../temporary_folder.hpp"
@@ -64,6 +65,46 @@ TEST(Chain, DepthWithoutAnythingInItIsReportedAndDoesNoHarm) {
   empty.depth = cv::Mat(empty.depth.size(), CV_32FC1, cv::Scalar(std::nan("")));
   EXPECT_EQ(outcome(chain.process(toMessages(empty))), TrackingStatusMsg::NO_DEPTH);
   EXPECT_EQ(outcome(chain.process(toMessages(sequence.frame(3).frame))), TrackingStatusMsg::FUSED);
+}
+
+TEST(Chain, WhileItIsLostTheSegmenterGetsNoViewAndNoPoseIsPublished) {
+  Chain chain("lost");
+  chain.set("tracking/lost_after_frames", 2);
+  ASSERT_TRUE(chain.load());
+  std::mutex mutex;
+  std::vector<ModelViewMsg::ConstPtr> views;
+  int poses = 0;
+  const boost::function<void(const ModelViewMsg::ConstPtr&)> on_view =
+      [&](const ModelViewMsg::ConstPtr& view) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        views.push_back(view);
+      };
+  const boost::function<void(const geometry_msgs::PoseStamped::ConstPtr&)> on_pose =
+      [&](const geometry_msgs::PoseStamped::ConstPtr&) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        ++poses;
+      };
+  auto view = chain.handle().subscribe<ModelViewMsg>(topics::kModelView, 100, on_view);
+  auto pose = chain.handle().subscribe<geometry_msgs::PoseStamped>(topics::kPose, 100, on_pose);
+  const SyntheticSequence sequence(smallSequence(4, false));
+  for (int i = 0; i < 4; ++i) {
+    pf::RgbdFrame frame = sequence.frame(i).frame;
+    if (i > 0) frame.depth = cv::Mat::zeros(frame.depth.size(), CV_16UC1);
+    const auto status = chain.process(toMessages(frame));
+    EXPECT_EQ(status.located != 0, i == 0);
+    EXPECT_EQ(status.state == TrackingStatusMsg::LOST, i >= 2) << i;
+    EXPECT_EQ(status.reason.empty(), i == 0) << status.reason;
+  }
+  EXPECT_TRUE(Chain::waitUntil([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return views.size() >= 4;
+  }));
+  view.shutdown();
+  pose.shutdown();
+  const std::lock_guard<std::mutex> lock(mutex);
+  ASSERT_EQ(views.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(views[i]->depth.data.empty(), i >= 2) << i;
+  EXPECT_EQ(poses, 1);
 }
 
 TEST(Chain, AMissingModelIsNamedInEachStatus) {

@@ -73,5 +73,41 @@ TEST(Chain, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
   chain.unload();
 }
 
+TEST(Chain, ATimeJumpBeginsANewMapEvenWhereTheOldOneCannotBeKept) {
+  const pf::TemporaryFolder folder;
+  std::ofstream(folder / "before_reset_1") << "in the way of the folder";
+  Chain chain("jump_unsaved");
+  chain.set("output", folder.str());
+  ASSERT_TRUE(chain.load());
+  const SyntheticSequence sequence(smallSequence(3, false));
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < 3; ++i) {
+      pf::RgbdFrame frame = sequence.frame(i).frame;
+      frame.stamp_ns += (round == 0 ? 100 : 50) * 1000000000L;
+      const auto status = chain.process(toMessages(frame));
+      EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << round << " " << i << status.reason;
+    }
+  }
+  chain.unload();
+  EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 3), "51.");
+  EXPECT_EQ(posesIn(folder / "trajectory.partial.txt.old").substr(0, 4), "101.")
+      << "at least the poses of the old map are kept";
+}
+
+TEST(Chain, PosesAreOnTheDiskAsTheyCome) {
+  const pf::TemporaryFolder folder;
+  Chain chain("journal");
+  chain.set("output", folder / "out");
+  ASSERT_TRUE(chain.load());
+  const SyntheticSequence sequence(smallSequence(3, false));
+  for (int i = 0; i < 3; ++i) {
+    chain.process(toMessages(sequence.frame(i).frame));
+    EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.partial.txt").size(), i + 1U);
+  }
+  chain.unload();
+  EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 3U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/trajectory.partial.txt"));
+}
+
 }  // namespace
 }  // namespace posefusion_ros

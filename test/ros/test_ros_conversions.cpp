@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/conversions.hpp"
-#include "posefusion_ros/model_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -139,22 +138,6 @@ TEST(RosConversions, UselessCameraInfoIsAnErrorThatNamesTheField) {
   EXPECT_EQ(errorOf([&] { toCamera(fisheye, true); }), "");
 }
 
-TEST(RosConversions, PeopleGoThereAndBack) {
-  pf::People people;
-  people.stamp_ns = 1234567890123456789;
-  people.detected = true;
-  people.people.resize(2);
-  people.people[1].score = 0.75F;
-  people.people[1].joints[17] = {3.25F, 4.5F, 0.5F};
-  const auto back = fromMessage(toMessage(people, headerAt(people.stamp_ns)));
-  EXPECT_EQ(back.stamp_ns, people.stamp_ns);
-  EXPECT_TRUE(back.detected);
-  ASSERT_EQ(back.people.size(), 2U);
-  EXPECT_EQ(back.people[1].score, 0.75F);
-  EXPECT_EQ(back.people[1].joints[17].v, 4.5F);
-  EXPECT_EQ(back.people[0].joints[0].p, 0.0F);
-}
-
 TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {
   pf::RgbdFrame frame;
   frame.depth = noise(CV_16UC1) * 37;
@@ -169,51 +152,5 @@ TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {
   EXPECT_TRUE(same(actual, expected));
 }
 
-TEST(RosConversions, StatusConstantsAreThoseOfTheCore) {
-  using pf::FrameOutcome;
-  const auto code = [](FrameOutcome outcome) {
-    pf::FrameStatus status;
-    status.outcome = outcome;
-    return toMessage(status, headerAt(0), status.T_map_camera).outcome;
-  };
-  EXPECT_EQ(code(FrameOutcome::fused), std::uint8_t{TrackingStatusMsg::FUSED});
-  EXPECT_EQ(code(FrameOutcome::bad_input), std::uint8_t{TrackingStatusMsg::BAD_INPUT});
-  EXPECT_EQ(code(FrameOutcome::blurred), std::uint8_t{TrackingStatusMsg::BLURRED});
-  EXPECT_EQ(code(FrameOutcome::no_depth), std::uint8_t{TrackingStatusMsg::NO_DEPTH});
-  EXPECT_EQ(code(FrameOutcome::not_converged), std::uint8_t{TrackingStatusMsg::NOT_CONVERGED});
-  EXPECT_EQ(code(FrameOutcome::few_inliers), std::uint8_t{TrackingStatusMsg::FEW_INLIERS});
-  EXPECT_EQ(code(FrameOutcome::jumped), std::uint8_t{TrackingStatusMsg::JUMPED});
-}
-
 }  // namespace
-TEST(ModelView, KeepsEveryPlaneTheSegmenterReads) {
-  pf::ModelView view;
-  view.stamp_ns = 1234567890123456789LL;
-  view.camera.width = 4;
-  view.camera.height = 3;
-  view.camera.fx = view.camera.fy = 5;
-  view.camera.cx = 1.5;
-  view.camera.cy = 1.25;
-  view.T_map_camera.translation() << 0.1, 0.2, 0.3;
-  float value = 1;
-  for (cv::Mat* plane :
-       {&view.depth_m, &view.normal_x, &view.normal_y, &view.normal_z, &view.intensity}) {
-    *plane = cv::Mat(3, 4, CV_32FC1, cv::Scalar(value));
-    plane->at<float>(2, 3) = 10 * value++;
-  }
-  view.stable = cv::Mat(3, 4, CV_8UC1, cv::Scalar(255));
-  view.stable.at<std::uint8_t>(1, 2) = 0;
-  const ModelViewMsg::ConstPtr message = toMessage(view, std_msgs::Header());  // owns the pixels
-  const pf::ModelView read = fromMessage(message);
-  EXPECT_EQ(read.stamp_ns, view.stamp_ns);
-  EXPECT_TRUE(read.camera == view.camera);
-  EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
-  for (const auto plane :
-       {&pf::ModelView::depth_m, &pf::ModelView::normal_x, &pf::ModelView::normal_y,
-        &pf::ModelView::normal_z, &pf::ModelView::intensity, &pf::ModelView::stable}) {
-    ASSERT_EQ((read.*plane).type(), (view.*plane).type());
-    EXPECT_EQ(cv::norm(read.*plane, view.*plane, cv::NORM_INF), 0);
-  }
-}
-
 }  // namespace posefusion_ros

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posefusion_ros/credit_window.hpp"
+#include "posefusion_ros/latency.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -113,6 +114,20 @@ TEST(CreditWindow, WaitsWhileStatusesComeIn) {
   chain.join();
   window.sent(50);
   EXPECT_FALSE(window.waitBelow(1, duration<double>(1000.0), [] { return false; }));
+}
+
+TEST(LatencyMeter, TellsWithinWhichTimeAPartOfTheResultsCame) {
+  LatencyMeter meter;
+  EXPECT_EQ(meter.quantile(0.5), 0.0);
+  const LatencyMeter::Time start;
+  for (int i = 0; i <= 100; ++i) meter.sent(i, start);
+  // The later frame is the quicker one.
+  for (int i = 0; i <= 100; ++i) meter.arrived(i, start + std::chrono::milliseconds(100 - i));
+  meter.arrived(7, start + std::chrono::hours(1));     // a second result
+  meter.arrived(1000, start + std::chrono::hours(1));  // of no frame
+  EXPECT_EQ(meter.count(), 101U);
+  EXPECT_NEAR(meter.quantile(0.5), 0.050, 1e-9);
+  EXPECT_NEAR(meter.quantile(0.99), 0.099, 1e-9);
 }
 
 }  // namespace

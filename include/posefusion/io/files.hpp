@@ -10,6 +10,11 @@ namespace pf {
 /// name, renamed by commit(). Without commit() nothing is left behind.
 class AtomicFile {
  public:
+  /// What commit() waits for. `disk`: file and name are on the disk, so that a power cut leaves the
+  /// old file or the new one. `system`: only the process may die; for the many files of a
+  /// recording.
+  enum class Until { disk, system };
+
   /// Throws InputError naming the file when it cannot be made.
   explicit AtomicFile(const std::string& path);
   ~AtomicFile();
@@ -19,7 +24,7 @@ class AtomicFile {
   std::ostream& stream() { return stream_; }
 
   /// Throws InputError naming the file when something could not be written (disk full).
-  void commit();
+  void commit(Until until = Until::disk);
 
  private:
   std::string path_;

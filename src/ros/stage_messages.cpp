@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/stage_messages.hpp"
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion_ros/conversions.hpp"
+
+namespace posefusion_ros {
+
+using pf::InputError;
+
+PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header) {
+  PeopleMsg message;
+  message.header = header;
+  message.detected = static_cast<unsigned char>(people.detected);
+  message.people.resize(people.people.size());
+  for (std::size_t i = 0; i < people.people.size(); ++i) {
+    const pf::Person& from = people.people[i];
+    message.people[i].score = from.score;
+    for (int j = 0; j < pf::kJointCount; ++j) {
+      KeypointMsg& joint = message.people[i].joints[j];
+      joint.u = from.joints[j].u;
+      joint.v = from.joints[j].v;
+      joint.p = from.joints[j].p;
+    }
+  }
+  return message;
+}
+
+pf::People fromMessage(const PeopleMsg& message) {
+  pf::People people;
+  people.stamp_ns = toNs(message.header.stamp);
+  people.detected = message.detected != 0;
+  people.people.resize(message.people.size());
+  for (std::size_t i = 0; i < message.people.size(); ++i) {
+    people.people[i].score = message.people[i].score;
+    for (int j = 0; j < pf::kJointCount; ++j) {
+      const KeypointMsg& from = message.people[i].joints[j];
+      people.people[i].joints[j] = {from.u, from.v, from.p};
+    }
+  }
+  return people;
+}
+
+SparseFlowMsg::Ptr toMessage(const pf::SparseFlow& flow, const std_msgs::Header& header) {
+  auto message = boost::make_shared<SparseFlowMsg>();
+  message->header = header;
+  message->from = toTime(flow.from_ns);
+  message->before.reserve(2 * flow.before.size());
+  message->after.reserve(2 * flow.after.size());
+  for (const cv::Point2f& p : flow.before) {
+    message->before.insert(message->before.end(), {p.x, p.y});
+  }
+  for (const cv::Point2f& p : flow.after) message->after.insert(message->after.end(), {p.x, p.y});
+  return message;
+}
+
+pf::SparseFlow fromMessage(const SparseFlowMsg& message) {
+  if (message.before.size() != message.after.size() || message.before.size() % 2 != 0) {
+    throw InputError("flow: " + std::to_string(message.before.size()) + " numbers before and " +
+                     std::to_string(message.after.size()) + " after, expected equally many pairs");
+  }
+  pf::SparseFlow flow;
+  flow.from_ns = toNs(message.from);
+  flow.to_ns = toNs(message.header.stamp);
+  for (std::size_t i = 0; i < message.before.size(); i += 2) {
+    flow.before.emplace_back(message.before[i], message.before[i + 1]);
+    flow.after.emplace_back(message.after[i], message.after[i + 1]);
+  }
+  return flow;
+}
+
+TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
+                            const Eigen::Isometry3d& T_map_camera) {
+  TrackingStatusMsg message;
+  message.header = header;
+  message.outcome = static_cast<std::uint8_t>(status.outcome);
+  message.state = static_cast<std::uint8_t>(status.state);
+  message.located = static_cast<unsigned char>(status.located);
+  message.reason = reasonOf(status);
+  message.pose = toPose(T_map_camera);
+  const pf::TrackingResult& tracking = status.tracking;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance.data()) =
+      tracking.covariance;
+  message.candidates = static_cast<std::uint32_t>(std::max(0, tracking.candidates));
+  message.inliers = static_cast<std::uint32_t>(std::max(0, tracking.inliers));
+  message.geometric_rmse_m = tracking.geometric_rmse_m;
+  message.photometric_rmse = tracking.photometric_rmse;
+  message.surfels = status.surfels;
+  message.tracking_ms = status.tracking_ms;
+  message.fusion_ms = status.fusion_ms;
+  return message;
+}
+
+geometry_msgs::Pose toPose(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  geometry_msgs::Pose pose;
+  pose.position.x = T.translation().x();
+  pose.position.y = T.translation().y();
+  pose.position.z = T.translation().z();
+  pose.orientation.x = q.x();
+  pose.orientation.y = q.y();
+  pose.orientation.z = q.z();
+  pose.orientation.w = q.w();
+  return pose;
+}
+
+}  // namespace posefusion_ros
