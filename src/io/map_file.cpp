@@ -14,10 +14,10 @@ namespace pf {
 namespace {
 
 // A point, then radius and confidence.
-constexpr std::size_t kVertexBytes = PlyPoint::kBytes + 2 * sizeof(float);
+constexpr std::size_t kVertexBytes = kPointBytes + 2 * sizeof(float);
 
 std::vector<std::string> vertexProperties() {
-  std::vector<std::string> properties = PlyPoint::properties();
+  std::vector<std::string> properties = pointProperties();
   properties.insert(properties.end(), {"float radius", "float confidence"});
   return properties;
 }
@@ -27,24 +27,33 @@ unsigned char toByte(float value) {
 }
 
 void pack(const SurfelArrays& s, std::size_t i, char* out) {
-  const PlyPoint point{{s.x[i], s.y[i], s.z[i]},
-                       {s.nx[i], s.ny[i], s.nz[i]},
-                       {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])}};
-  point.pack(out);
+  packPoint({{s.x[i], s.y[i], s.z[i]},
+             {s.nx[i], s.ny[i], s.nz[i]},
+             {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])}},
+            out);
   const std::array<float, 2> rest = {s.radius[i], s.confidence[i]};
-  std::memcpy(out + PlyPoint::kBytes, rest.data(), sizeof rest);
+  std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
 
-void unpack(const char* in, std::size_t i, SurfelArrays& s) {
-  const PlyPoint point = PlyPoint::unpack(in);
+/// Throws where the file has other vertices than saveMap() writes.
+PlyVertices findVertices(const std::string& file) {
+  PlyVertices vertices = readPlyHeader(file);
+  const bool same = vertices.bytes == kVertexBytes &&
+                    vertices.offset("radius", "float") == kPointBytes &&
+                    vertices.offset("confidence", "float") == kPointBytes + sizeof(float);
+  if (!same) throw InputError("other properties");
+  return vertices;
+}
+
+void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, SurfelArrays& s) {
   std::array<float, 2> rest{};
-  std::memcpy(rest.data(), in + PlyPoint::kBytes, sizeof rest);
-  s.x[i] = point.position[0];
-  s.y[i] = point.position[1];
-  s.z[i] = point.position[2];
-  s.nx[i] = point.normal[0];
-  s.ny[i] = point.normal[1];
-  s.nz[i] = point.normal[2];
+  std::memcpy(rest.data(), vertex + kPointBytes, sizeof rest);
+  s.x[i] = point.position.x();
+  s.y[i] = point.position.y();
+  s.z[i] = point.position.z();
+  s.nx[i] = point.normal.x();
+  s.ny[i] = point.normal.y();
+  s.nz[i] = point.normal.z();
   s.r[i] = point.color[0];
   s.g[i] = point.color[1];
   s.b[i] = point.color[2];
@@ -72,20 +81,23 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map) {
 
 SurfelArrays loadMap(const std::string& path) {
   const std::string text = readFile(path);
-  const auto vertices = findPlyVertices(text, vertexProperties());
-  if (!vertices) {
+  PlyVertices vertices;
+  try {
+    vertices = findVertices(text);
+  } catch (const InputError&) {
     throw InputError(path +
                      ": is no map of posefusion, expected binary little-endian PLY with its "
                      "properties");
   }
-  const std::size_t count = vertices->count, bytes = text.size() - vertices->begin;
+  const std::size_t count = vertices.count, bytes = text.size() - vertices.begin;
   if (bytes / kVertexBytes != count || bytes % kVertexBytes != 0) {
     throw InputError(path + ": is not whole, expected " + std::to_string(count) + " surfels");
   }
+  const std::vector<SurfacePoint> points = readPoints(text, vertices);
   SurfelArrays surfels;
   surfels.forEachArray([&](auto& array) { array.resize(count); });
   for (std::size_t i = 0; i < count; ++i) {
-    unpack(&text[vertices->begin + i * kVertexBytes], i, surfels);
+    unpack(points[i], &text[vertices.begin + i * kVertexBytes], i, surfels);
   }
   return surfels;
 }

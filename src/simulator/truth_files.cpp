@@ -30,16 +30,14 @@ Json personJson(const PersonTruth& person) {
   return {{"id", person.id}, {"name", person.name}, {"pixels", person.pixels}, {"joints", joints}};
 }
 
-PlyPoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
-                 const Eigen::Vector3f& color) {
-  return {{position.x(), position.y(), position.z()},
-          {normal.x(), normal.y(), normal.z()},
-          {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
+SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
+                     const Eigen::Vector3f& color) {
+  return {position, normal, {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
 }
 
-void putPoint(std::ostream& out, const PlyPoint& point) {
-  std::array<char, PlyPoint::kBytes> bytes;
-  point.pack(bytes.data());
+void putPoint(std::ostream& out, const SurfacePoint& point) {
+  std::array<char, kPointBytes> bytes;
+  packPoint(point, bytes.data());
   out.write(bytes.data(), bytes.size());
 }
 
@@ -128,7 +126,7 @@ void saveSceneMesh(const std::string& path, const World& world) {
     }
   }
   AtomicFile file(path);
-  file.stream() << plyHeader({{"vertex", mesh.positions.size(), PlyPoint::properties()},
+  file.stream() << plyHeader({{"vertex", mesh.positions.size(), pointProperties()},
                               {"face", mesh.triangles.size(), {"list uchar int vertex_indices"}}});
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     putPoint(file.stream(), pointOf(mesh.positions[v], mesh.normals[v], colors[v]));
@@ -142,7 +140,7 @@ void saveSceneMesh(const std::string& path, const World& world) {
 
 void saveScenePoints(const std::string& path, const World& world, double spacing_m) {
   const Mesh& mesh = world.mesh;
-  std::vector<PlyPoint> points;
+  std::vector<SurfacePoint> points;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
     const Eigen::Vector3f a = mesh.positions[v[0]], ab = mesh.positions[v[1]] - a,
@@ -158,8 +156,8 @@ void saveScenePoints(const std::string& path, const World& world, double spacing
     }
   }
   AtomicFile file(path);
-  file.stream() << plyHeader({{"vertex", points.size(), PlyPoint::properties()}});
-  for (const PlyPoint& p : points) putPoint(file.stream(), p);
+  file.stream() << plyHeader({{"vertex", points.size(), pointProperties()}});
+  for (const SurfacePoint& p : points) putPoint(file.stream(), p);
   file.commit();
 }
 

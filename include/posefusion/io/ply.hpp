@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
-#include <optional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pf {
+
+/// One point of a coloured surface: position (m), unit normal, colour R G B.
+struct SurfacePoint {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  Eigen::Matrix<unsigned char, 3, 1> color = Eigen::Matrix<unsigned char, 3, 1>::Zero();
+};
 
 /// The records of one kind in a PLY file.
 struct PlyElement {
@@ -16,30 +24,36 @@ struct PlyElement {
   std::vector<std::string> properties;  ///< type and name, "float x", in the order of the bytes
 };
 
-/// A point with a normal and a colour: the first 27 bytes of each vertex that is written here.
-struct PlyPoint {
-  std::array<float, 3> position{};  ///< metres
-  std::array<float, 3> normal{};
-  std::array<unsigned char, 3> color{};  ///< R G B
-
-  static constexpr std::size_t kBytes = 6 * sizeof(float) + 3;
-  static std::vector<std::string> properties();
-  void pack(char* out) const;
-  static PlyPoint unpack(const char* in);
-};
-
 /// All that comes before the records of a binary little-endian PLY file (G. Turk, "The PLY Polygon
 /// File Format", 1994). `comment` may be empty.
 std::string plyHeader(const std::vector<PlyElement>& elements, const std::string& comment = "");
 
-/// Where the records of a file with vertices alone begin, and how many there are.
+/// A vertex as everything here writes it begins with a point in `kPointBytes` bytes.
+constexpr std::size_t kPointBytes = 6 * sizeof(float) + 3;
+std::vector<std::string> pointProperties();
+void packPoint(const SurfacePoint& point, char* out);
+
+/// Where the vertices lie in a PLY file, and the properties in a vertex.
 struct PlyVertices {
-  std::size_t begin = 0;
   std::size_t count = 0;
+  std::size_t begin = 0;  ///< of the first, bytes into the file
+  std::size_t bytes = 0;  ///< of each
+  std::map<std::string, std::pair<std::string, std::size_t>> properties;  ///< type, offset
+
+  /// Bytes into a vertex. Throws InputError where there is no such property of that type.
+  std::size_t offset(const std::string& name, const std::string& type) const;
 };
 
-/// Nothing where `file` does not begin with a header of vertices with just these properties.
-std::optional<PlyVertices> findPlyVertices(const std::string& file,
-                                           const std::vector<std::string>& properties);
+/// Reads the header of a binary little-endian PLY file whose first element are vertices. Throws
+/// InputError saying what it has instead.
+PlyVertices readPlyHeader(const std::string& file);
+
+/// Points from vertices with x y z nx ny nz (float) and red green blue (uchar); other properties
+/// are passed over. Throws InputError where one is missing or `file` is too short.
+std::vector<SurfacePoint> readPoints(const std::string& file, const PlyVertices& vertices);
+
+/// Reads the points of a file: map.ply of a run, scene_points.ply of a simulated sequence. Throws
+/// InputError naming the file.
+std::vector<SurfacePoint> loadPoints(const std::string& path);
 
 }  // namespace pf
