@@ -61,17 +61,6 @@ class Runs(Report):
     def evaluate(self, *arguments):
         return json.loads(call(PROGRAMS / "posefusion_evaluate", *arguments, "--json"))
 
-    def sequence(self, name, *arguments):
-        """A folder of posefusion_make_sequence."""
-        folder = self.output / name
-        program = PROGRAMS / "posefusion_make_sequence"
-        marker = folder / "complete"
-        if not marker.exists() or marker.stat().st_mtime < program.stat().st_mtime:
-            shutil.rmtree(folder, ignore_errors=True)
-            call(program, folder, *arguments)
-            marker.touch()
-        return folder
-
     def simulated(self, scenario, seed, duration=None):
         """A simulated sequence: that of --sequences where it is there, or made, and kept until
         what it is made from changes. `duration` in seconds; None: the scenario's own."""

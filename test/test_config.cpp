@@ -7,11 +7,12 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/slam/config.hpp"
+#include "temporary_folder.hpp"
 
 namespace pf {
 namespace {
 
-std::string errorOf(const std::string& assignment) {
+std::string assignmentError(const std::string& assignment) {
   Config config;
   try {
     applyAssignment(config, assignment);
@@ -48,17 +49,22 @@ TEST(Config, AssignmentSetsOneField) {
 }
 
 TEST(Config, ErrorsNameTheKeyTheValueAndWhatWasExpected) {
-  EXPECT_EQ(errorOf("tracking.speed=1"), "setting: tracking.speed is no setting of posefusion");
-  EXPECT_EQ(errorOf("trackin.max_distance_m=1"), "setting: trackin is no setting of posefusion");
-  EXPECT_EQ(errorOf("tracking.max_distance_m=near"),
+  EXPECT_EQ(assignmentError("tracking.speed=1")
+                .rfind("setting: tracking.speed is unknown, expected one of ", 0),
+            0U);
+  EXPECT_NE(assignmentError("tracking.speed=1").find("max_distance_m"), std::string::npos);
+  EXPECT_EQ(assignmentError("trackin.max_distance_m=1"),
+            "setting: trackin is unknown, expected one of blur, frame, map, pose, segmentation, "
+            "tracking");
+  EXPECT_EQ(assignmentError("tracking.max_distance_m=near"),
             "setting: tracking.max_distance_m is 'near', expected a number");
-  EXPECT_EQ(errorOf("tracking.max_distance_m=-1"),
+  EXPECT_EQ(assignmentError("tracking.max_distance_m=-1"),
             "setting: tracking.max_distance_m is -1, expected 0.001 to 10");
-  EXPECT_EQ(errorOf("tracking.max_distance_m=.nan"),
+  EXPECT_EQ(assignmentError("tracking.max_distance_m=.nan"),
             "setting: tracking.max_distance_m is nan, expected 0.001 to 10");
-  EXPECT_EQ(errorOf("pose.detector=guess"),
+  EXPECT_EQ(assignmentError("pose.detector=guess"),
             "setting: pose.detector is 'guess', expected one of network, recorded, none");
-  EXPECT_EQ(errorOf("speed"), "'speed': expected group.name=value");
+  EXPECT_EQ(assignmentError("speed"), "'speed': expected group.name=value");
 }
 
 TEST(Config, AFailedFileLeavesTheConfigurationAsItWas) {
@@ -66,6 +72,22 @@ TEST(Config, AFailedFileLeavesTheConfigurationAsItWas) {
   EXPECT_THROW(applyYaml(config, YAML::Load("{blur: {threshold: 5, nonsense: 1}}"), "x.yaml"),
                InputError);
   EXPECT_EQ(listFields(config), listFields(Config{}));
+}
+
+TEST(Config, FilesAreCheckedAsWholes) {
+  const TemporaryFolder folder;
+  Config config;
+  const auto error = [&](const std::string& text) {
+    return errorOf([&] { applyFile(config, folder.write("x.yaml", text)); });
+  };
+  EXPECT_EQ(error("blur: {threshold: 5}\npose:\n"), "") << "a group without a value is empty";
+  EXPECT_EQ(config.blur.threshold, 5.0);
+  EXPECT_NE(error("blur: {threshold: 6, threshold: 7}").find("x.yaml: threshold is given twice"),
+            std::string::npos);
+  EXPECT_NE(error("blur: 3").find("x.yaml: blur is '3', expected keys with values"),
+            std::string::npos);
+  EXPECT_NE(error("blur: [").find("x.yaml: is not YAML"), std::string::npos);
+  EXPECT_EQ(config.blur.threshold, 5.0);
 }
 
 TEST(Config, ModesDifferByConfigurationAlone) {

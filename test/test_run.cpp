@@ -5,31 +5,23 @@
 #include <atomic>
 #include <limits>
 #include <stdexcept>
-#include <thread>
 
-#include "posefusion/core/bounded_queue.hpp"
 #include "posefusion/map/surfel_map.hpp"
 #include "posefusion/run/run.hpp"
-#include "synthetic/sequence.hpp"
+#include "simulated_sequence.hpp"
 
 namespace pf {
 namespace {
 
 constexpr int kFrames = 20;
 
-const SyntheticSequence& sequence() {
-  static const SyntheticSequence made([] {
-    SyntheticOptions options;
-    options.frames = kFrames;
-    options.width = 320;
-    options.height = 240;
-    return options;
-  }());
-  return made;
+const SimulatedSequence& sequence() {
+  static const SimulatedSequence drawn("box_walker", kFrames);
+  return drawn;
 }
 
-/// The code-made sequence; frame `bad` is unreadable, reading stops with an exception at `broken`.
-class SyntheticSource : public FrameSource {
+/// A simulated sequence; frame `bad` is unreadable, reading stops with an exception at `broken`.
+class SimulatedSource : public FrameSource {
  public:
   int bad = -1, broken = -1;
   std::atomic<int> read{0};
@@ -79,11 +71,11 @@ Config config() {
 
 std::unique_ptr<Pipeline> makePipeline() {
   return std::make_unique<Pipeline>(config(),
-                                    makePoseDetector(config().pose, SyntheticSource().people()));
+                                    makePoseDetector(config().pose, SimulatedSource().people()));
 }
 
 Result runThreaded() {
-  SyntheticSource source;
+  SimulatedSource source;
   const auto pipeline = makePipeline();
   Result result;
   runPipeline(source, *pipeline, [&](const ProcessedFrame& frame, const std::string&) {
@@ -95,7 +87,7 @@ Result runThreaded() {
 }
 
 Result runSerially() {
-  SyntheticSource source;
+  SimulatedSource source;
   const auto pipeline = makePipeline();
   Result result;
   while (auto next = source.next()) result.add(pipeline->process(next->frame));
@@ -115,7 +107,7 @@ TEST(RunPipeline, GivesWhatOneThreadGivesToTheBit) {
 }
 
 TEST(RunPipeline, StopsWhenToldAndDoesNotReadFarAhead) {
-  SyntheticSource source;
+  SimulatedSource source;
   const auto pipeline = makePipeline();
   int done = 0;
   runPipeline(source, *pipeline,
@@ -125,7 +117,7 @@ TEST(RunPipeline, StopsWhenToldAndDoesNotReadFarAhead) {
 }
 
 TEST(RunPipeline, AnUnreadableFrameIsReportedAndTheRestGoesOn) {
-  SyntheticSource source;
+  SimulatedSource source;
   source.bad = 2;
   const auto pipeline = makePipeline();
   std::vector<std::string> defects;
@@ -181,7 +173,7 @@ TEST(BadDepth, FromTheFirstFrameOnWaitsForDepth) {
 }
 
 TEST(RunPipeline, WhatReadingThrowsArrivesAfterTheFramesBefore) {
-  SyntheticSource source;
+  SimulatedSource source;
   source.broken = 4;
   const auto pipeline = makePipeline();
   int done = 0;
@@ -192,49 +184,13 @@ TEST(RunPipeline, WhatReadingThrowsArrivesAfterTheFramesBefore) {
 }
 
 TEST(RunPipeline, WhatTheCallerThrowsArrives) {
-  SyntheticSource source;
+  SimulatedSource source;
   const auto pipeline = makePipeline();
   EXPECT_THROW(runPipeline(source, *pipeline,
                            [&](const ProcessedFrame&, const std::string&) -> bool {
                              throw std::logic_error("no");
                            }),
                std::logic_error);
-}
-
-TEST(BoundedQueue, KeepsTheOrderAndNeverMoreThanItsCapacity) {
-  BoundedQueue<int> queue(3);
-  std::atomic<int> pushed{0};
-  std::atomic<int> most_ahead{0};
-  std::atomic<int> popped{0};
-  std::thread producer([&] {
-    for (int i = 0; i < 1000; ++i) {
-      queue.push(i);
-      most_ahead = std::max(most_ahead.load(), ++pushed - popped);
-    }
-    queue.close();
-  });
-  int expected = 0;
-  while (auto item = queue.pop()) {
-    ++popped;
-    EXPECT_EQ(*item, expected++);
-  }
-  producer.join();
-  EXPECT_EQ(expected, 1000);
-  EXPECT_LE(most_ahead, 4);  // one may have been popped and not counted yet
-}
-
-TEST(BoundedQueue, ClosingWakesWhoWaits) {
-  BoundedQueue<int> full(1);
-  full.push(1);
-  std::thread producer([&] { EXPECT_FALSE(full.push(2)); });
-  full.close();
-  producer.join();
-  EXPECT_EQ(full.pop(), 1);
-  EXPECT_EQ(full.pop(), std::nullopt);
-  BoundedQueue<int> empty(1);
-  std::thread consumer([&] { EXPECT_EQ(empty.pop(), std::nullopt); });
-  empty.close();
-  consumer.join();
 }
 
 }  // namespace

@@ -11,6 +11,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("include", "src", "test", "scripts", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
+# The folders of include/ and src/, lowest first: each includes only those before it.
+LAYERS = ("core", "config", "blur", "frame", "pose", "segmentation", "tracking", "map", "slam", "io",
+          "evaluation", "run", "simulator", "ros", "openni2", "nodelets", "tools")
+FORMATTER = "version 14."  # of clang-format: others lay out some lines differently
 
 
 def files(*folders):
@@ -34,6 +38,12 @@ def shell_scripts():
 
 def name(path):
     return str(path.relative_to(ROOT))
+
+
+def folder_of(parts):
+    """The folder of a source, or of an include: posefusion/map/render.hpp is in map."""
+    library = {"posefusion_ros": "ros", "posefusion_openni2": "openni2"}
+    return library.get(parts[0]) or (parts[1] if parts[0] == "posefusion" else parts[0])
 
 
 def documents():
@@ -126,33 +136,6 @@ class Bench(unittest.TestCase):
         self.assertIn("no part is called wlak", done.stderr)
 
 
-class MakeSequence(unittest.TestCase):
-    def make(self, folder, *options):
-        program = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / "posefusion_make_sequence"
-        return subprocess.run([str(program), str(folder), *options], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
-
-    def test_same_seed_same_bytes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            one, two = pathlib.Path(folder, "one"), pathlib.Path(folder, "two")
-            for path in (one, two):
-                done = self.make(path, "--frames", "3", "--seed", "5")
-                self.assertEqual(done.returncode, 0, done.stderr)
-            made = sorted(p.relative_to(one) for p in one.rglob("*") if p.is_file())
-            self.assertIn(pathlib.Path("people.json"), made)
-            self.assertEqual(len(made), 3 * 3 + 6)
-            for path in made:
-                self.assertEqual((one / path).read_bytes(), (two / path).read_bytes(), str(path))
-
-    def test_full_folder_is_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "mine").write_text("precious")
-            done = self.make(folder, "--frames", "1")
-            self.assertEqual(done.returncode, 1)
-            self.assertIn(folder, done.stderr)
-            self.assertEqual([p.name for p in pathlib.Path(folder).iterdir()], ["mine"])
-
-
 class Repository(unittest.TestCase):
     def test_core_includes_no_ros(self):
         outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "include/posefusion_ros/")
@@ -171,6 +154,34 @@ class Repository(unittest.TestCase):
             for line in path.read_text().splitlines():
                 self.assertIsNone(ros.search(line), f"{name(path)}: {line}")
         self.assertGreater(looked_at, 20)
+
+    def test_no_folder_depends_on_one_above_it(self):
+        includes = 0
+        for path in files("include", "src"):
+            if path.suffix not in (".hpp", ".cpp"):
+                continue
+            here = folder_of(path.relative_to(ROOT).parts[1:])
+            self.assertIn(here, LAYERS, f"{name(path)}: a new folder needs a place in LAYERS")
+            for included in re.findall(r'#include "([^"]+/[^"]+)"', path.read_text()):
+                there = folder_of(included.split("/"))
+                if there not in LAYERS:
+                    continue
+                includes += 1
+                self.assertLessEqual(LAYERS.index(there), LAYERS.index(here),
+                                     f"{name(path)} includes {included}")
+        self.assertGreater(includes, 200)
+
+    def test_sources_are_formatted(self):
+        try:
+            version = subprocess.run(["clang-format", "--version"], stdout=subprocess.PIPE, text=True)
+        except FileNotFoundError:
+            self.skipTest("no clang-format")
+        if FORMATTER not in version.stdout:
+            self.skipTest(f"clang-format is not {FORMATTER}: {version.stdout.strip()}")
+        sources = [str(p) for p in files("include", "src", "test") if p.suffix in (".hpp", ".cpp")]
+        done = subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], cwd=ROOT, text=True,
+                              stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 0, "run clang-format -i:\n" + done.stderr[:2000])
 
     def test_every_source_names_its_licence(self):
         for path in code_files():

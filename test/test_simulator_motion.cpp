@@ -151,18 +151,18 @@ struct Extremes {
 };
 
 Extremes extremesOf(const CameraPath& path, double duration_s) {
-  constexpr double kStepS = 0.005;
+  constexpr double kStep_s = 0.005;
   Extremes most;
   Eigen::Isometry3d before = path.at(0.0);
-  Eigen::Vector3d last = (path.at(kStepS).translation() - before.translation()) / kStepS;
-  for (double t = kStepS; t < duration_s; t += kStepS) {
+  Eigen::Vector3d last = (path.at(kStep_s).translation() - before.translation()) / kStep_s;
+  for (double t = kStep_s; t < duration_s; t += kStep_s) {
     const Eigen::Isometry3d now = path.at(t);
     EXPECT_NEAR(now.linear().determinant(), 1.0, 1e-6);
-    const Eigen::Vector3d velocity = (now.translation() - before.translation()) / kStepS;
+    const Eigen::Vector3d velocity = (now.translation() - before.translation()) / kStep_s;
     const double angle = Eigen::AngleAxisd(before.linear().transpose() * now.linear()).angle();
     most.speed_m_s = std::max(most.speed_m_s, velocity.norm());
-    most.turn_rad_s = std::max(most.turn_rad_s, angle / kStepS);
-    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, (velocity - last).norm() / kStepS);
+    most.turn_rad_s = std::max(most.turn_rad_s, angle / kStep_s);
+    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, (velocity - last).norm() / kStep_s);
     before = now;
     last = velocity;
   }

@@ -20,9 +20,10 @@ bool contains(const std::string& text, const std::string& part) {
 const std::string kRoom = "rooms: [{size_m: [4, 4, 2.5]}]\n";
 
 TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
-  for (const char* name : {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere",
-                           "sitting_static", "sitting_xyz", "sitting_halfsphere", "loop_room",
-                           "hrpslam1", "hrpslam2", "fall_short", "empty_room", "crowd"}) {
+  for (const char* name :
+       {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere", "sitting_static",
+        "sitting_xyz", "sitting_halfsphere", "loop_room", "hrpslam1", "hrpslam2", "fall_short",
+        "empty_room", "crowd", "empty_box", "box_walker"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;
@@ -39,7 +40,8 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
 
 TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
   // The others have the people and the rooms of one of these.
-  for (const char* name : {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd"}) {
+  for (const char* name :
+       {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd", "box_walker"}) {
     const Scenario s = loadScenario(name);
     World world;
     for (const auto& room : s.rooms) addRoom(world, room, 1U);
@@ -75,24 +77,24 @@ TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
   EXPECT_TRUE(contains(loadError("duration_s: 3"), "rooms is missing"));
   EXPECT_TRUE(contains(loadError(kRoom + "colour: {}"), "colour is unknown"));
   EXPECT_TRUE(contains(loadError(kRoom + "camera: {motion: fly}"), "halfsphere"));
-  EXPECT_TRUE(contains(loadError(kRoom + "camera: {wdith: 3}"), "camera: wdith is unknown"));
+  EXPECT_TRUE(contains(loadError(kRoom + "camera: {wdith: 3}"), "camera.wdith is unknown"));
   EXPECT_TRUE(contains(loadError(kRoom + "duration_s: long"), "expected a number"));
   EXPECT_TRUE(contains(loadError(kRoom + "duration_s: -3"), "duration_s is -3"));
   EXPECT_TRUE(
-      contains(loadError(kRoom + "objects: [{kind: table, at_m: [1]}]"), "objects[0]: at_m"));
+      contains(loadError(kRoom + "objects: [{kind: table, at_m: [1]}]"), "objects[0].at_m"));
   EXPECT_TRUE(contains(loadError(kRoom + "objects: [{kind: chiar, at_m: [1, 1]}]"), "chair"));
   EXPECT_TRUE(contains(loadError(kRoom + "people: [{script: [{do: fly}]}]"),
-                       "people[0]: script[0]: do is 'fly'"));
+                       "people[0].script[0].do is 'fly'"));
   EXPECT_TRUE(contains(loadError("base: scene.yaml\n" + kRoom), "leads back"));
   EXPECT_TRUE(contains(loadError("base: [a]\n" + kRoom), "scene.yaml: base is not"));
   EXPECT_TRUE(contains(loadError(kRoom + "fps: 9\nfps: 8"), "scene.yaml: fps is given twice"));
   EXPECT_TRUE(contains(loadError(kRoom + "seed: 1.5"), "seed is 1.5, expected a whole number"));
   EXPECT_TRUE(contains(loadError(kRoom + "duration_s: 0"), "duration_s is 0, expected 0.05 to"));
-  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 6}"), "depth: min_m"));
-  EXPECT_TRUE(contains(loadError("rooms: [{walls: fur}]"), "rooms[0]: walls is 'fur'"));
+  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 6}"), "depth.min_m"));
+  EXPECT_TRUE(contains(loadError("rooms: [{walls: fur}]"), "rooms[0].walls is 'fur'"));
   const std::string robot = "camera: {motion: robot, waypoints: [[1, 1], [3, 1]], ";
   EXPECT_TRUE(contains(loadError(kRoom + robot + "falls: [{at_s: 9}, {at_s: 3}]}"),
-                       "falls[1]: at_s is not after"));
+                       "falls[1].at_s is not after"));
   EXPECT_TRUE(contains(loadError(kRoom + robot + "turn_deg_s: 0}"), "turn_deg_s"));
 }
 
@@ -111,21 +113,21 @@ TEST(SimulatorScenario, ImpossibleGeometryIsRefused) {
   EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1], look_at_m: [1, 1, 2]}"), "straight above"));
   EXPECT_TRUE(contains(build("camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
                              "people: [{start_m: [2, 2], script: [{do: walk, to: [9, 2]}]}]"),
-                       "people[0]: script[0]"));
+                       "people[0].script[0]"));
   const std::string table =
       "camera: {at_m: [1, 1, 1.2], look_at_m: [3, 3, 1]}\n"
       "objects: [{kind: table, at_m: [2.5, 2.5]}]\n";
   EXPECT_TRUE(contains(build(table + "people: [{start_m: [2.5, 2.6]}]"),
-                       "scene.yaml: people[0]: start_m is (2.50, 2.60), inside"));
+                       "scene.yaml: people[0].start_m is (2.50, 2.60), inside"));
   EXPECT_TRUE(
       contains(build(table + "people: [{start_m: [1, 3], script: [{do: walk, to: [2.5, 2.5]}]}]"),
-               "people[0]: script[0]: to is (2.50, 2.50), inside"));
+               "people[0].script[0].to is (2.50, 2.50), inside"));
   EXPECT_TRUE(contains(build("people: [{start_m: [1, 3], script: [{do: walk, to: [6, 3]}]}]\n"
                              "rooms: [{size_m: [4, 4, 2.5]}, "
                              "{origin_m: [4.2, 0], size_m: [4, 4, 2.5]}]\n"),
-                       "people[0]: script[0]: to is (6.00, 3.00), no way leads there"));
+                       "people[0].script[0].to is (6.00, 3.00), no way leads there"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, at_m: [9, 1]}]"),
-                       "scene.yaml: objects[0]: at_m is (9.00, 1.00), outside"));
+                       "scene.yaml: objects[0].at_m is (9.00, 1.00), outside"));
   EXPECT_TRUE(contains(build("objects: [{kind: table, texture: fur, at_m: [1, 1]}]"), "fur"));
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "posefusion/io/frame_source.hpp"
 #include "simulator/output.hpp"
@@ -203,6 +204,25 @@ TEST(SimulatorTruth, OneThreadMakesTheSameBytesAsMany) {
     EXPECT_TRUE(same(many[i].frame.depth, serial[i].frame.depth));
     EXPECT_TRUE(same(many[i].mask, serial[i].mask));
   }
+}
+
+TEST(SimulatorTruth, TheWalkerOfTheSmallRoomCrossesTheView) {
+  ScenarioChanges changes;
+  changes.assignments = {"camera.width=160"};
+  Simulation simulation(loadScenario("box_walker", changes));
+  double covered = 0.0;
+  int seen = 0, left = 160, right = 0;
+  for (int i = 0; i < simulation.frameCount(); i += 15, ++seen) {
+    const SimulatedFrame frame = simulation.frame(i);
+    const cv::Rect body = cv::boundingRect(frame.mask > 0);
+    covered += cv::countNonZero(frame.mask) / static_cast<double>(frame.mask.total());
+    left = std::min(left, body.x);
+    right = std::max(right, body.x + body.width);
+  }
+  EXPECT_GT(covered / seen, 0.05);
+  EXPECT_LT(covered / seen, 0.30);
+  EXPECT_LT(left, 60);
+  EXPECT_GT(right, 100);
 }
 
 TEST(SimulatorTruth, TumFolderIsReadBack) {

@@ -15,9 +15,10 @@
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
-#include "posefusion/io/tum_writer.hpp"
 #include "program.hpp"
-#include "synthetic/sequence.hpp"
+#include "simulator/output.hpp"
+#include "simulator/scenario.hpp"
+#include "simulator/simulation.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
@@ -36,20 +37,12 @@ class ToolsTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
-    SyntheticOptions options;
-    options.frames = kFrames;
-    options.width = 320;
-    options.height = 240;
-    const SyntheticSequence sequence(options);
-    TumWriter writer(*folder_ / "sequence", sequence.camera());
-    for (int i = 0; i < kFrames; ++i) {
-      const SyntheticFrame frame = sequence.frame(i);
-      writer.add(frame.frame);
-      writer.addTruth({frame.frame.stamp_ns, frame.T_map_camera});
-      writer.addMask(frame.frame.stamp_ns, frame.mask);
-      writer.addPeople(frame.people);
-    }
-    writer.finish();
+    simulator::ScenarioChanges changes;
+    changes.duration_s = kFrames / 30.0;
+    simulator::Simulation simulation(simulator::loadScenario("box_walker", changes));
+    const auto output = simulator::openTumOutput(*folder_ / "sequence", simulation);
+    for (int i = 0; i < kFrames; ++i) output->add(simulation.frame(i));
+    output->finish(simulation);
   }
   static void TearDownTestSuite() { delete folder_; }
 
@@ -180,7 +173,7 @@ TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
   EXPECT_TRUE(hasSaid("threshold: 9.0"));
   EXPECT_TRUE(hasSaid("detector: none"));
   EXPECT_EQ(run({sequence(), "--set", "blur.treshold=9"}), 1);
-  EXPECT_TRUE(hasSaid("blur.treshold is no setting of posefusion")) << said;
+  EXPECT_TRUE(hasSaid("blur.treshold is unknown, expected one of")) << said;
   EXPECT_EQ(run({sequence(), "--set", "blur.threshold=-1"}), 1);
   EXPECT_TRUE(hasSaid("blur.threshold is -1, expected 0 to")) << said;
   EXPECT_EQ(run({sequence(), "--mode", "fast"}), 1);

@@ -5,11 +5,11 @@
 #include <ros/node_handle.h>
 #include <yaml-cpp/yaml.h>
 
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "posefusion/config/yaml_map.hpp"
 #include "posefusion/slam/config.hpp"
 
 namespace posefusion_ros {
@@ -48,17 +48,11 @@ class Parameters {
 
  private:
   template <typename Value>
-  Value read(const std::string& name, const Value& fallback, const std::string& expected);
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const;
-  /// The value, noted; fails where it is out of range.
-  template <typename Value>
-  Value within(const std::string& name, const Value& value, const Range& range);
-  template <typename Value>
-  void note(const std::string& name, const Value& value);
+  Value note(const std::string& name, const Value& value);
 
-  YAML::Node values_;
+  YAML::Node tree_;
   std::string origin_;
-  std::set<std::string> known_;
+  pf::YamlMap values_;  ///< of tree_
   std::ostringstream effective_;
 };
 

@@ -5,50 +5,58 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <sstream>
-#include <string_view>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
+#include "posefusion/io/ply.hpp"
 
 namespace pf {
 namespace {
 
-// Six floats, three bytes, two floats, without gaps.
-constexpr std::size_t kVertexBytes = 6 * 4 + 3 + 2 * 4;
+// A point, then radius and confidence.
+constexpr std::size_t kVertexBytes = kPointBytes + 2 * sizeof(float);
 
-constexpr std::string_view kProperties =
-    "property float x\nproperty float y\nproperty float z\n"
-    "property float nx\nproperty float ny\nproperty float nz\n"
-    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    "property float radius\nproperty float confidence\nend_header\n";
-constexpr std::string_view kFormat = "ply\nformat binary_little_endian 1.0\n";
+std::vector<std::string> vertexProperties() {
+  std::vector<std::string> properties = pointProperties();
+  properties.insert(properties.end(), {"float radius", "float confidence"});
+  return properties;
+}
 
 unsigned char toByte(float value) {
   return static_cast<unsigned char>(std::lround(std::min(255.0F, std::max(0.0F, value))));
 }
 
 void pack(const SurfelArrays& s, std::size_t i, char* out) {
-  const std::array<float, 6> geometry = {s.x[i], s.y[i], s.z[i], s.nx[i], s.ny[i], s.nz[i]};
-  const std::array<unsigned char, 3> color = {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])};
+  packPoint({{s.x[i], s.y[i], s.z[i]},
+             {s.nx[i], s.ny[i], s.nz[i]},
+             {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])}},
+            out);
   const std::array<float, 2> rest = {s.radius[i], s.confidence[i]};
-  std::memcpy(out, geometry.data(), sizeof geometry);
-  std::memcpy(out + sizeof geometry, color.data(), sizeof color);
-  std::memcpy(out + sizeof geometry + sizeof color, rest.data(), sizeof rest);
+  std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
 
-void unpack(const char* in, std::size_t i, SurfelArrays& s) {
-  std::array<float, 6> geometry{};
-  std::array<unsigned char, 3> color{};
+/// Throws where the file has other vertices than saveMap() writes.
+PlyVertices findVertices(const std::string& file) {
+  PlyVertices vertices = readPlyHeader(file);
+  const bool same = vertices.bytes == kVertexBytes &&
+                    vertices.offset("radius", "float") == kPointBytes &&
+                    vertices.offset("confidence", "float") == kPointBytes + sizeof(float);
+  if (!same) throw InputError("other properties");
+  return vertices;
+}
+
+void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, SurfelArrays& s) {
   std::array<float, 2> rest{};
-  std::memcpy(geometry.data(), in, sizeof geometry);
-  std::memcpy(color.data(), in + sizeof geometry, sizeof color);
-  std::memcpy(rest.data(), in + sizeof geometry + sizeof color, sizeof rest);
-  float* const places[] = {&s.x[i], &s.y[i], &s.z[i], &s.nx[i], &s.ny[i], &s.nz[i]};
-  for (std::size_t k = 0; k < geometry.size(); ++k) *places[k] = geometry[k];
-  s.r[i] = color[0];
-  s.g[i] = color[1];
-  s.b[i] = color[2];
+  std::memcpy(rest.data(), vertex + kPointBytes, sizeof rest);
+  s.x[i] = point.position.x();
+  s.y[i] = point.position.y();
+  s.z[i] = point.position.z();
+  s.nx[i] = point.normal.x();
+  s.ny[i] = point.normal.y();
+  s.nz[i] = point.normal.z();
+  s.r[i] = point.color[0];
+  s.g[i] = point.color[1];
+  s.b[i] = point.color[2];
   s.radius[i] = rest[0];
   s.weight[i] = s.confidence[i] = rest[1];
 }
@@ -58,9 +66,8 @@ void unpack(const char* in, std::size_t i, SurfelArrays& s) {
 std::size_t saveMap(const std::string& path, const SurfelMap& map) {
   const std::size_t count = map.stableCount();
   AtomicFile file(path);
-  file.stream() << kFormat << "comment surfels of posefusion: map frame, metres\n"
-                << "element vertex " << count << "\n"
-                << kProperties;
+  file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
+                             "surfels of posefusion: map frame, metres");
   std::array<char, kVertexBytes> vertex{};
   map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
     if (!map.isStable(surfels, i)) return;
@@ -73,23 +80,24 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map) {
 
 SurfelArrays loadMap(const std::string& path) {
   const std::string text = readFile(path);
-  const std::string element = "element vertex ";
-  const auto at = text.find(element);
-  const auto properties = text.find(kProperties);
-  if (text.rfind(kFormat, 0) != 0 || at == std::string::npos || properties == std::string::npos) {
+  PlyVertices vertices;
+  try {
+    vertices = findVertices(text);
+  } catch (const InputError&) {
     throw InputError(path +
                      ": is no map of posefusion, expected binary little-endian PLY with its "
                      "properties");
   }
-  std::size_t count = 0;
-  std::istringstream(text.substr(at + element.size(), 20)) >> count;
-  const std::size_t begin = properties + kProperties.size();
-  if ((text.size() - begin) / kVertexBytes != count || (text.size() - begin) % kVertexBytes != 0) {
+  const std::size_t count = vertices.count, bytes = text.size() - vertices.begin;
+  if (bytes / kVertexBytes != count || bytes % kVertexBytes != 0) {
     throw InputError(path + ": is not whole, expected " + std::to_string(count) + " surfels");
   }
+  const std::vector<SurfacePoint> points = readPoints(text, vertices);
   SurfelArrays surfels;
   surfels.resize(count);
-  for (std::size_t i = 0; i < count; ++i) unpack(&text[begin + i * kVertexBytes], i, surfels);
+  for (std::size_t i = 0; i < count; ++i) {
+    unpack(points[i], &text[vertices.begin + i * kVertexBytes], i, surfels);
+  }
   return surfels;
 }
 

@@ -2,8 +2,6 @@
 #include "posefusion/io/people_json.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "posefusion/core/error.hpp"
@@ -52,21 +50,20 @@ void checkJointNames(const json& root) {
   if (!same) throw InputError("joints are not those of COCO-18 in OpenPose's order");
 }
 
-/// The shortest text that reads back as the same number.
-std::string text(float value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
+/// Keys in the order given, and single-precision numbers in the shortest text that reads back.
+using OutputJson = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool,
+                                        std::int64_t, std::uint64_t, float>;
+
+OutputJson toJson(const Person& person) {
+  OutputJson joints = OutputJson::array();
+  for (const Keypoint& joint : person.joints) joints.push_back({joint.u, joint.v, joint.p});
+  return {{"score", person.score}, {"joints", std::move(joints)}};
 }
 
-std::string toJson(const Person& person) {
-  std::string out = "{\"score\": " + text(person.score) + ", \"joints\": [";
-  for (std::size_t i = 0; i < person.joints.size(); ++i) {
-    const Keypoint& joint = person.joints[i];
-    out +=
-        (i > 0 ? ", [" : "[") + text(joint.u) + ", " + text(joint.v) + ", " + text(joint.p) + "]";
-  }
-  return out + "]}";
+OutputJson toJson(const People& frame) {
+  OutputJson people = OutputJson::array();
+  for (const Person& person : frame.people) people.push_back(toJson(person));
+  return {{"stamp", formatStamp(frame.stamp_ns)}, {"people", std::move(people)}};
 }
 
 }  // namespace
@@ -102,12 +99,7 @@ void savePeople(const std::string& path, const std::vector<People>& frames) {
   const char* separator = "\n";
   for (const People& frame : frames) {
     if (!frame.detected) continue;
-    file.stream() << separator << "  {\"stamp\": \"" << formatStamp(frame.stamp_ns)
-                  << "\", \"people\": [";
-    for (std::size_t i = 0; i < frame.people.size(); ++i) {
-      file.stream() << (i > 0 ? ", " : "") << toJson(frame.people[i]);
-    }
-    file.stream() << "]}";
+    file.stream() << separator << "  " << toJson(frame).dump();
     separator = ",\n";
   }
   file.stream() << "\n ]}\n";

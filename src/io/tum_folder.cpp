@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMaxPairDifferenceNs = 20'000'000;
+constexpr std::int64_t kMaxPairDifference_ns = 20'000'000;
 
 struct Entry {
   std::int64_t stamp_ns = 0;
@@ -65,7 +65,7 @@ std::vector<Entry> matchLists(const fs::path& folder, InputReport& report) {
   for (const auto& row : color) color_stamps.push_back(parseStamp(row[0]));
   for (const auto& row : depth) depth_stamps.push_back(parseStamp(row[0]));
   std::vector<Entry> entries;
-  for (const auto& [c, d] : matchStamps(color_stamps, depth_stamps, kMaxPairDifferenceNs)) {
+  for (const auto& [c, d] : matchStamps(color_stamps, depth_stamps, kMaxPairDifference_ns)) {
     entries.push_back({color_stamps[c], color[c][1], depth[d][1]});
   }
   report.color_without_depth = color.size() - entries.size();

@@ -40,7 +40,10 @@ cv::Mat packDepth(const RgbdFrame& frame, double depth_factor) {
 struct TumWriter::State {
   fs::path folder;
   CameraFile camera;
-  std::vector<std::int64_t> stamps;
+  struct Pair {
+    std::string color, depth;  ///< stamps
+  };
+  std::vector<Pair> pairs;
   Trajectory truth;
   std::vector<People> people;
 };
@@ -48,8 +51,8 @@ struct TumWriter::State {
 TumWriter::TumWriter(const std::string& folder, const PinholeCamera& camera, double depth_factor)
     : state_(std::make_unique<State>()) {
   validate(camera);
-  if (fs::is_directory(folder) && !fs::is_empty(folder)) {
-    throw InputError(folder + ": is not empty, expected a new folder");
+  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
+    throw InputError(folder + ": is there and not empty, expected a new folder");
   }
   state_->folder = folder;
   state_->camera = {camera, depth_factor};
@@ -59,16 +62,19 @@ TumWriter::TumWriter(const std::string& folder, const PinholeCamera& camera, dou
 
 TumWriter::~TumWriter() = default;
 
-void TumWriter::add(const RgbdFrame& frame) {
+void TumWriter::add(const RgbdFrame& frame) { add(frame, frame.stamp_ns); }
+
+void TumWriter::add(const RgbdFrame& frame, std::int64_t depth_stamp_ns) {
   const std::string defect = defectOf(frame);
   if (!defect.empty()) throw InputError(state_->folder.string() + ": " + defect);
   if (frame.camera != state_->camera.camera) {
     throw InputError(state_->folder.string() + ": a frame of another camera cannot be added");
   }
-  const std::string name = formatStamp(frame.stamp_ns) + ".png";
-  savePng(state_->folder / "rgb" / name, frame.color);
-  savePng(state_->folder / "depth" / name, packDepth(frame, *state_->camera.depth_factor));
-  state_->stamps.push_back(frame.stamp_ns);
+  const State::Pair stamps{formatStamp(frame.stamp_ns), formatStamp(depth_stamp_ns)};
+  savePng(state_->folder / "rgb" / (stamps.color + ".png"), frame.color);
+  savePng(state_->folder / "depth" / (stamps.depth + ".png"),
+          packDepth(frame, *state_->camera.depth_factor));
+  state_->pairs.push_back(stamps);
 }
 
 void TumWriter::addTruth(const StampedPose& pose) { state_->truth.push_back(pose); }
@@ -84,15 +90,16 @@ void TumWriter::finish() {
   const auto list = [&](const std::string& file, const std::string& columns, const auto& line) {
     AtomicFile out(state_->folder / file);
     out.stream() << "# " << columns << "\n";
-    for (const auto stamp : state_->stamps) out.stream() << line(formatStamp(stamp)) << "\n";
+    for (const auto& pair : state_->pairs) out.stream() << line(pair) << "\n";
     out.commit();
   };
-  const auto rgb = [](const std::string& s) { return s + " rgb/" + s + ".png"; };
-  const auto depth = [](const std::string& s) { return s + " depth/" + s + ".png"; };
+  using Pair = const State::Pair&;
+  const auto rgb = [](Pair p) { return p.color + " rgb/" + p.color + ".png"; };
+  const auto depth = [](Pair p) { return p.depth + " depth/" + p.depth + ".png"; };
   list("rgb.txt", "timestamp filename", rgb);
   list("depth.txt", "timestamp filename", depth);
   list("associations.txt", "timestamp filename timestamp filename",
-       [&](const std::string& s) { return rgb(s) + " " + depth(s); });
+       [&](Pair p) { return rgb(p) + " " + depth(p); });
   if (!state_->truth.empty()) {
     saveTrajectory(state_->folder / "groundtruth.txt", state_->truth, "camera to world");
   }

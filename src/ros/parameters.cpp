@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "posefusion/core/error.hpp"
-
 namespace posefusion_ros {
 namespace {
 
@@ -13,6 +11,11 @@ XmlRpc::XmlRpcValue privateTree(const ros::NodeHandle& handle) {
   XmlRpc::XmlRpcValue values;
   handle.getParam(handle.getNamespace(), values);
   return values;
+}
+
+YAML::Node mapOf(XmlRpc::XmlRpcValue values) {
+  const YAML::Node tree = toYaml(std::move(values));
+  return tree.IsMap() ? tree : YAML::Node(YAML::NodeType::Map);
 }
 
 }  // namespace
@@ -51,87 +54,49 @@ Parameters::Parameters(const ros::NodeHandle& private_handle)
     : Parameters(privateTree(private_handle), private_handle.getNamespace()) {}
 
 Parameters::Parameters(XmlRpc::XmlRpcValue values, std::string origin)
-    : values_(toYaml(std::move(values))), origin_(std::move(origin)) {
-  if (!values_.IsMap()) values_ = YAML::Node(YAML::NodeType::Map);
-}
-
-void Parameters::fail(const std::string& name, const std::string& what) const {
-  throw pf::InputError("parameter " + origin_ + "/" + name + " " + what);
-}
+    : tree_(mapOf(std::move(values))),
+      origin_(std::move(origin)),
+      values_(tree_, "parameter " + origin_ + "/") {}
 
 template <typename Value>
-void Parameters::note(const std::string& name, const Value& value) {
+Value Parameters::note(const std::string& name, const Value& value) {
   effective_ << (effective_.tellp() > 0 ? " " : "") << name << "=" << value;
-}
-
-template <typename Value>
-Value Parameters::read(const std::string& name, const Value& fallback,
-                       const std::string& expected) {
-  known_.insert(name);
-  Value value = fallback;
-  const YAML::Node& values = values_;
-  if (const YAML::Node found = values[name]) {
-    try {
-      value = found.as<Value>();
-    } catch (const YAML::Exception&) {
-      std::ostringstream text;
-      text << found;
-      fail(name, "is '" + text.str() + "', expected " + expected);
-    }
-  }
   return value;
 }
 
 bool Parameters::flag(const std::string& name, bool fallback) {
-  const bool value = read(name, fallback, "true or false");
-  note(name, value ? "true" : "false");
-  return value;
-}
-
-template <typename Value>
-Value Parameters::within(const std::string& name, const Value& value, const Range& range) {
-  if (!(value >= range.min && value <= range.max)) {  // not a number is out of range, too
-    std::ostringstream what;
-    what << "is " << value << ", expected " << range.min << " to " << range.max;
-    fail(name, what.str());
-  }
-  note(name, value);
+  const bool value = values_.flag(name, fallback);
+  note(name, std::string(value ? "true" : "false"));
   return value;
 }
 
 int Parameters::integer(const std::string& name, int fallback, const Range& range) {
-  return within(name, read(name, fallback, "a whole number"), range);
+  return note(name, values_.integer(name, fallback, static_cast<int>(range.min),
+                                    static_cast<int>(range.max)));
 }
 
 double Parameters::number(const std::string& name, double fallback, const Range& range) {
-  return within(name, read(name, fallback, "a number"), range);
+  return note(name, values_.number(name, fallback, range.min, range.max));
 }
 
 std::string Parameters::text(const std::string& name, const std::string& fallback) {
-  const std::string value = read(name, fallback, "a text");
+  const std::string value = values_.text(name, fallback);
   note(name, "'" + value + "'");
   return value;
 }
 
 std::string Parameters::choice(const std::string& name, const std::string& fallback,
                                const std::vector<std::string>& words) {
-  const std::string value = read(name, fallback, "a word");
-  if (std::find(words.begin(), words.end(), value) == words.end()) {
-    std::string list;
-    for (const auto& word : words) list += (list.empty() ? "" : ", ") + word;
-    fail(name, "is '" + value + "', expected one of " + list);
-  }
-  note(name, value);
-  return value;
+  return note(name, values_.word(name, fallback, words));
 }
 
 pf::Config Parameters::config(const std::vector<std::string>& groups) {
   pf::Config config;
   YAML::Node tree(YAML::NodeType::Map);
-  for (const auto& entry : values_) {
+  for (const auto& entry : tree_) {
     if (!entry.second.IsMap()) continue;
     tree[entry.first] = entry.second;
-    known_.insert(entry.first.as<std::string>());
+    values_.map(entry.first.as<std::string>());  // is asked for
   }
   pf::applyYaml(config, tree, "parameters of " + origin_);
   const std::string mode = text("mode", "");
@@ -144,11 +109,8 @@ pf::Config Parameters::config(const std::vector<std::string>& groups) {
 }
 
 std::vector<std::string> Parameters::unknown() const {
-  std::vector<std::string> names;
-  for (const auto& entry : values_) {
-    const auto name = entry.first.as<std::string>();
-    if (known_.count(name) == 0) names.push_back(origin_ + "/" + name);
-  }
+  std::vector<std::string> names = values_.unread();
+  for (auto& name : names) name.insert(0, origin_ + "/");
   return names;
 }
 

@@ -1,57 +1,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/run/run.hpp"
 
-#include <future>
-#include <tuple>
-#include <utility>
+#include <tbb/concurrent_queue.h>
 
-#include "posefusion/core/bounded_queue.hpp"
+#include <atomic>
+#include <future>
+#include <optional>
+#include <utility>
 
 namespace pf {
 namespace {
 
 /// Frames that wait between two threads: enough to even out slow frames, few megabytes.
-constexpr std::size_t kFramesAhead = 4;
+constexpr std::ptrdiff_t kFramesAhead = 4;
+
+/// Items handed from one thread to the next; nothing marks the end.
+template <typename Item>
+class Handover {
+ public:
+  Handover() { queue_.set_capacity(kFramesAhead); }
+
+  /// Waits for room.
+  void put(std::optional<Item> item) { queue_.push(std::move(item)); }
+
+  /// Waits for an item. Nothing at the end, again and again.
+  std::optional<Item> take() {
+    std::optional<Item> item;
+    if (!ended_) queue_.pop(item);
+    ended_ = !item;
+    return item;
+  }
+
+ private:
+  tbb::concurrent_bounded_queue<std::optional<Item>> queue_;
+  bool ended_ = false;  ///< of the thread that takes
+};
+
+/// Marks the end of what a thread puts, however it leaves its work.
+template <typename Item>
+struct Ending {
+  Handover<Item>& out;
+  ~Ending() { out.put(std::nullopt); }
+};
+
+/// Takes what is left, so that who puts never waits for ever, and tells the source to stop.
+template <typename Item>
+struct Draining {
+  Handover<Item>& in;
+  std::atomic<bool>& stop;
+  ~Draining() {
+    stop = true;
+    while (in.take()) {
+    }
+  }
+};
 
 struct SeenSource {
   SeenFrame seen;
   std::string defect;
 };
 
-/// Closes the queues at the end of a scope, so that no thread waits for another for ever.
-template <typename... Queues>
-class Closing {
- public:
-  explicit Closing(Queues&... queues) : queues_(queues...) {}
-  ~Closing() {
-    std::apply([](auto&... queue) { (queue.close(), ...); }, queues_);
-  }
-
- private:
-  std::tuple<Queues&...> queues_;
-};
-
 }  // namespace
 
 void runPipeline(FrameSource& source, Pipeline& pipeline, const FrameDone& done) {
-  BoundedQueue<SourceFrame> read(kFramesAhead);
-  BoundedQueue<SeenSource> seen(kFramesAhead);
+  Handover<SourceFrame> read;
+  Handover<SeenSource> seen;
+  std::atomic<bool> stop{false};
 
   auto reader = std::async(std::launch::async, [&] {
-    const Closing closing(read);
-    while (auto frame = source.next()) {
-      if (!read.push(std::move(*frame))) return;
+    const Ending<SourceFrame> ending{read};
+    while (!stop) {
+      auto frame = source.next();
+      if (!frame) return;
+      read.put(std::move(frame));
     }
   });
   auto seer = std::async(std::launch::async, [&] {
-    const Closing closing(read, seen);
-    while (auto frame = read.pop()) {
-      if (!seen.push({pipeline.see(frame->frame), std::move(frame->defect)})) return;
+    const Ending<SeenSource> ending{seen};
+    const Draining<SourceFrame> draining{read, stop};
+    while (auto frame = read.take()) {
+      seen.put(SeenSource{pipeline.see(frame->frame), std::move(frame->defect)});
     }
   });
   {
-    const Closing closing(read, seen);
-    while (auto next = seen.pop()) {
+    const Draining<SeenSource> draining{seen, stop};
+    while (auto next = seen.take()) {
       if (!done(pipeline.map(std::move(next->seen)), next->defect)) break;
     }
   }

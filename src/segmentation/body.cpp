@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pf {
 namespace {
@@ -17,33 +18,21 @@ constexpr float kHeadRadius_m = 0.12F;
 constexpr float kLegRadius_m = 0.105F;
 constexpr float kArmRadius_m = 0.084F;
 
-struct Limb {
-  Joint from;
-  Joint to;
-  float radius_m;
-};
+using Limb = std::pair<Joint, Joint>;
 
-constexpr std::array<Limb, 18> kLimbs{{
-    {Joint::neck, Joint::right_shoulder, kTorsoRadius_m},
-    {Joint::neck, Joint::left_shoulder, kTorsoRadius_m},
-    {Joint::neck, Joint::right_hip, kTorsoRadius_m},
-    {Joint::neck, Joint::left_hip, kTorsoRadius_m},
-    {Joint::right_hip, Joint::left_hip, kTorsoRadius_m},
-    {Joint::right_shoulder, Joint::right_elbow, kArmRadius_m},
-    {Joint::right_elbow, Joint::right_wrist, kArmRadius_m},
-    {Joint::left_shoulder, Joint::left_elbow, kArmRadius_m},
-    {Joint::left_elbow, Joint::left_wrist, kArmRadius_m},
-    {Joint::right_hip, Joint::right_knee, kLegRadius_m},
-    {Joint::right_knee, Joint::right_ankle, kLegRadius_m},
-    {Joint::left_hip, Joint::left_knee, kLegRadius_m},
-    {Joint::left_knee, Joint::left_ankle, kLegRadius_m},
-    {Joint::neck, Joint::nose, kHeadRadius_m},
-    {Joint::nose, Joint::right_eye, kHeadRadius_m},
-    {Joint::nose, Joint::left_eye, kHeadRadius_m},
-    {Joint::right_eye, Joint::right_ear, kHeadRadius_m},
-    {Joint::left_eye, Joint::left_ear, kHeadRadius_m},
-}};
+/// The lines of the skeleton, and the pelvis, which a drawing leaves out.
+constexpr std::array<Limb, kSkeletonLines.size() + 1> kLimbs = [] {
+  std::array<Limb, kSkeletonLines.size() + 1> limbs{};
+  for (std::size_t i = 0; i < kSkeletonLines.size(); ++i) {
+    limbs[i].first = kSkeletonLines[i].first;
+    limbs[i].second = kSkeletonLines[i].second;
+  }
+  limbs.back().first = Joint::right_hip;
+  limbs.back().second = Joint::left_hip;
+  return limbs;
+}();
 
+/// How far the body reaches round a joint, and round the limb that leads to it.
 float jointRadius(int joint) {
   switch (static_cast<Joint>(joint)) {
     case Joint::neck:
@@ -115,8 +104,8 @@ Eigen::Vector3f lift(const Keypoint& joint, float depth_m, const SceneGrid& grid
 }
 
 bool limbIsSeen(const Person& person, const Limb& limb) {
-  return person.joints[static_cast<int>(limb.from)].p > 0.0F &&
-         person.joints[static_cast<int>(limb.to)].p > 0.0F;
+  return person.joints[static_cast<int>(limb.first)].p > 0.0F &&
+         person.joints[static_cast<int>(limb.second)].p > 0.0F;
 }
 
 void addCapsules(const Person& person, const std::array<float, kJointCount>& depth,
@@ -124,9 +113,9 @@ void addCapsules(const Person& person, const std::array<float, kJointCount>& dep
   std::array<bool, kJointCount> covered{};
   for (const Limb& limb : kLimbs) {
     if (!limbIsSeen(person, limb)) continue;
-    const int a = static_cast<int>(limb.from), b = static_cast<int>(limb.to);
+    const int a = static_cast<int>(limb.first), b = static_cast<int>(limb.second);
     body.capsules.push_back({lift(person.joints[a], depth[a], grid),
-                             lift(person.joints[b], depth[b], grid), limb.radius_m});
+                             lift(person.joints[b], depth[b], grid), jointRadius(b)});
     covered[a] = covered[b] = true;
   }
   for (int j = 0; j < kJointCount; ++j) {
@@ -152,8 +141,8 @@ Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m)
   if (depth_m <= 0.0F) return body;
   for (const Limb& limb : kLimbs) {
     if (!limbIsSeen(person, limb)) continue;
-    const auto along = sampleLimb(person.joints[static_cast<int>(limb.from)],
-                                  person.joints[static_cast<int>(limb.to)], depth_m, grid);
+    const auto along = sampleLimb(person.joints[static_cast<int>(limb.first)],
+                                  person.joints[static_cast<int>(limb.second)], depth_m, grid);
     samples.insert(samples.end(), along.begin(), along.end());
   }
   std::vector<Sample> kept;

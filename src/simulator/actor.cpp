@@ -13,7 +13,7 @@ Vector2d direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 /// Moves an amount towards what is wanted, within `seconds` from 0 to 1.
 void approach(double& amount, double wanted, double seconds) {
-  const double step = kActorStepS / seconds;
+  const double step = kActorStep_s / seconds;
   amount += std::clamp(wanted - amount, -step, step);
 }
 
@@ -44,7 +44,7 @@ Actor::Actor(const PersonSpec& spec, const Walkway& walkway)
   const Action& first = spec_.script.front();
   if (first.kind == Action::Kind::sit) {  // seated from the beginning
     state_.yaw = first.yaw_rad;
-    state_.at = first.at_m.head<2>() + rig_.scale() * kSeatBehindM * direction(first.yaw_rad);
+    state_.at = first.at_m.head<2>() + rig_.scale() * kSeatBehind_m * direction(first.yaw_rad);
     state_.sit = 1.0;
     state_.seat_m = first.seat_m;
   }
@@ -67,7 +67,7 @@ void Actor::begin() {
   way_.clear();
   if (a.kind == Action::Kind::walk) way_ = walkway_->findWay(state_.at, a.at_m.head<2>());
   if (a.kind == Action::Kind::sit && state_.sit < 0.5) {
-    const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehindM * direction(a.yaw_rad);
+    const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehind_m * direction(a.yaw_rad);
     way_ = walkway_->findWay(state_.at, front);
     state_.seat_m = a.seat_m;
   }
@@ -76,7 +76,7 @@ void Actor::begin() {
 
 bool Actor::turnTo(double yaw) {
   const double error = std::remainder(yaw - state_.yaw, 2.0 * M_PI);
-  state_.yaw += std::clamp(error, -2.0 * kActorStepS, 2.0 * kActorStepS);
+  state_.yaw += std::clamp(error, -2.0 * kActorStep_s, 2.0 * kActorStep_s);
   return std::abs(error) < 0.05;
 }
 
@@ -93,22 +93,22 @@ bool Actor::walk(const Vector2d& goal, double speed, const std::vector<Vector2d>
   const double evading = left > 0.5 ? evade(state_, others, slow) : 0.0;
   const double wanted = std::atan2(d.y(), d.x()) + std::clamp(evading, -1.1, 1.1);
   const double error = std::remainder(wanted - state_.yaw, 2.0 * M_PI);
-  const double rate = 2.6 * kActorStepS;
+  const double rate = 2.6 * kActorStep_s;
   state_.yaw += std::clamp(0.12 * error, -rate, rate);
   const double facing = std::max(0.0, std::cos(error));
   const double braked = std::min(speed, std::sqrt(2.0 * 0.9 * left) + 0.05);
   const double want_speed = braked * facing * facing * slow;
   state_.speed_m_s +=
-      std::clamp(want_speed - state_.speed_m_s, -2.0 * kActorStepS, 1.2 * kActorStepS);
+      std::clamp(want_speed - state_.speed_m_s, -2.0 * kActorStep_s, 1.2 * kActorStep_s);
   // Close to the goal the last steps go straight there, whatever the body faces.
   const Vector2d heading = left < 0.3 ? Vector2d(d.normalized()) : direction(state_.yaw);
-  state_.at += std::max(state_.speed_m_s, left < 0.3 ? 0.15 : 0.0) * kActorStepS * heading;
+  state_.at += std::max(state_.speed_m_s, left < 0.3 ? 0.15 : 0.0) * kActorStep_s * heading;
   return false;
 }
 
 bool Actor::playSit(const std::vector<Vector2d>& others) {
   const Action& a = action();
-  const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehindM * direction(a.yaw_rad);
+  const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehind_m * direction(a.yaw_rad);
   if (action_s_ > a.for_s) {
     sit_wanted_ = 0.0;
     return state_.sit <= 0.0;
@@ -146,7 +146,7 @@ bool Actor::play(const std::vector<Vector2d>& others) {
 
 void Actor::push(const Vector2d& by) {
   if (state_.sit > 0.0) return;
-  const double step = 1.2 * kActorStepS;
+  const double step = 1.2 * kActorStep_s;
   const double length = by.norm();
   state_.at += by * std::min(1.0, step / std::max(length, 1e-9));
 }
@@ -164,8 +164,8 @@ void Actor::settleHeight() {
 
 void Actor::step(const std::vector<Vector2d>& others) {
   const Vector2d before = state_.at;
-  state_.time_s += kActorStepS;
-  action_s_ += kActorStepS;
+  state_.time_s += kActorStep_s;
+  action_s_ += kActorStep_s;
   if (action_s_ >= 0.0 && !over_ && play(others)) {
     action_s_ = 0.0;
     const bool last = current_ + 1 == spec_.script.size();
@@ -178,7 +178,7 @@ void Actor::step(const std::vector<Vector2d>& others) {
   approach(state_.talk, talk_wanted_, 0.6);
   approach(state_.reach, reach_wanted_, 0.8);
   approach(state_.carry, carry_wanted_, 0.7);
-  const Vector2d velocity = (state_.at - before) / kActorStepS;
+  const Vector2d velocity = (state_.at - before) / kActorStep_s;
   stepper_.step(state_.at, state_.yaw, velocity);
   state_.feet = stepper_.feet();
   settleHeight();

@@ -7,7 +7,7 @@
 
 namespace pf::simulator {
 
-constexpr double kActorStepS = 1.0 / 60.0;
+constexpr double kActorStep_s = 1.0 / 60.0;
 
 /// Puts the feet: one swings while the other stands, towards where the body will be.
 class Stepper {
@@ -74,6 +74,6 @@ class Actor {
 };
 
 /// How far the hips are behind the feet when seated, metres for a height of 1.75 m.
-constexpr double kSeatBehindM = 0.40;
+constexpr double kSeatBehind_m = 0.40;
 
 }  // namespace pf::simulator

@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kBodyCellM = 0.0145F;
-constexpr float kHeadCellM = 0.0065F;
-constexpr float kHandCellM = 0.0065F;
-constexpr float kBlendM = 0.022F;
+constexpr float kBodyCell_m = 0.0145F;
+constexpr float kHeadCell_m = 0.0065F;
+constexpr float kHandCell_m = 0.0065F;
+constexpr float kBlend_m = 0.022F;
 
 float unionOf(const std::vector<Blob>& blobs, const Vector3f& p, float rounding_m) {
   float d = 1e9F;
@@ -51,7 +51,7 @@ Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearan
     return unionOf(body, p, 0.030F) + folds;
   };
   Eigen::AlignedBox3f body_box = boxOf(body);
-  add(polygonise(body_distance, body_box, kBodyCellM), body, body_distance);
+  add(polygonise(body_distance, body_box, kBodyCell_m), body, body_distance);
 
   first_head_ = static_cast<std::uint32_t>(triangles_.size());
   const HeadShape shape(rig_, outfit);
@@ -65,7 +65,7 @@ Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearan
   const Eigen::AlignedBox3f head_box(s * Vector3f(-0.16F, -0.13F, 1.43F),
                                      s * Vector3f(0.14F, 0.13F, 1.79F));
   const std::size_t before = rest_.size();
-  add(polygonise(head_distance, head_box, kHeadCellM), head, head_distance);
+  add(polygonise(head_distance, head_box, kHeadCell_m), head, head_distance);
   hair_tag_.assign(rest_.size(), 1.0F);
   for (std::size_t v = before; v < rest_.size(); ++v) {
     hair_tag_[v] = shape.hair(rest_[v]) - shape.skin(rest_[v]);
@@ -75,7 +75,7 @@ Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearan
   for (const float side : {1.0F, -1.0F}) {
     const std::vector<Blob> hand = handBlobs(rig_, side);
     const auto hand_distance = [&](const Vector3f& p) { return unionOf(hand, p, 0.006F); };
-    add(polygonise(hand_distance, boxOf(hand), kHandCellM), hand, hand_distance);
+    add(polygonise(hand_distance, boxOf(hand), kHandCell_m), hand, hand_distance);
   }
   addBurden();
   hair_tag_.resize(rest_.size(), 1.0F);
@@ -134,7 +134,7 @@ void Avatar::bind(const Vector3f& p, const std::vector<Blob>& blobs, Influence& 
     if (!neighbours(bone, nearest)) continue;
     const float excess =
         distance[static_cast<std::size_t>(bone)] - distance[static_cast<std::size_t>(nearest)];
-    const float weight = std::exp(-excess / kBlendM);
+    const float weight = std::exp(-excess / kBlend_m);
     if (weight > 0.02F) candidates.emplace_back(-weight, bone);
   }
   std::sort(candidates.begin(), candidates.end());

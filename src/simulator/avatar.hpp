@@ -7,6 +7,7 @@
 #include "simulator/body_shape.hpp"
 #include "simulator/outfit.hpp"
 #include "simulator/rig.hpp"
+#include "simulator/surface_nets.hpp"
 
 namespace pf::simulator {
 

@@ -15,11 +15,11 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFloorHeightM = 0.24;
+constexpr double kFloorHeight_m = 0.24;
 /// Body and floor give way: the last part of a drop, and how quickly it is stopped.
 constexpr double kCrush = 0.107;
-constexpr double kStopS = 0.5 * kCrush / (1.0 - kCrush) * kDropS;  // no jump of the speed
-constexpr double kOnsetS = 0.02;                                   // of what rings through the body
+constexpr double kStop_s = 0.5 * kCrush / (1.0 - kCrush) * kDrop_s;  // no jump of the speed
+constexpr double kOnset_s = 0.02;  // of what rings through the body
 
 double smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -28,7 +28,7 @@ double smooth(double t) {
 
 /// A damped swing that begins softly.
 double ringing(double since_s, double decay_s, double rad_s) {
-  return (1.0 - std::exp(-since_s / kOnsetS)) * std::exp(-since_s / decay_s) *
+  return (1.0 - std::exp(-since_s / kOnset_s)) * std::exp(-since_s / decay_s) *
          std::sin(rad_s * since_s);
 }
 
@@ -43,7 +43,7 @@ class RobotPath : public CameraPath {
     const Piece& piece = after == pieces_.begin() ? *after : *(after - 1);
     const double since = std::clamp(t - piece.start_s, 0.0, piece.length_s);
     if (piece.kind == Piece::Kind::fall) {
-      const double still = std::min(since / kStaggerS, (piece.length_s - since) / kGetUpS);
+      const double still = std::min(since / kStagger_s, (piece.length_s - since) / kGetUp_s);
       return fallen(piece, since) * balance(t, 1.0 - smooth(still));
     }
     double part = since / piece.length_s;
@@ -131,7 +131,7 @@ class RobotPath : public CameraPath {
     const Vector2d ahead(std::cos(piece.from.yaw), std::sin(piece.from.yaw));
     const double sign = piece.fall.direction == "backward" ? -1.0 : 1.0;
     Isometry3d T = standing(piece.from.at + sign * 0.35 * ahead, piece.from.yaw);
-    T.translation().z() = kFloorHeightM;
+    T.translation().z() = kFloorHeight_m;
     if (piece.fall.direction == "forward") T.rotate(AngleAxisd(-1.15, Vector3d::UnitX()));
     if (piece.fall.direction == "backward") T.rotate(AngleAxisd(1.25, Vector3d::UnitX()));
     if (piece.fall.direction == "sideways") T.rotate(AngleAxisd(1.35, Vector3d::UnitZ()));
@@ -149,17 +149,17 @@ class RobotPath : public CameraPath {
   Isometry3d fallen(const Piece& piece, double since) const {
     const Isometry3d up = standing(piece.from.at, piece.from.yaw), down = lying(piece);
     const Isometry3d again = standing(piece.to.at, piece.to.yaw);
-    const double impact = since - kStaggerS - kDropS;
+    const double impact = since - kStagger_s - kDrop_s;
     if (impact < 0.0) {
       // It tips slowly, then gravity takes over.
-      const double tip = 0.10 * std::pow(std::min(1.0, since / kStaggerS), 2.0);
-      const double drop = std::max(0.0, (since - kStaggerS) / kDropS);
+      const double tip = 0.10 * std::pow(std::min(1.0, since / kStagger_s), 2.0);
+      const double drop = std::max(0.0, (since - kStagger_s) / kDrop_s);
       Isometry3d T = mix(up, down, tip + (1.0 - tip) * (1.0 - kCrush) * drop * drop);
       T.rotate(AngleAxisd(0.05 * std::sin(18.0 * since) * since * (1.0 - drop), Vector3d::UnitZ()));
       return T;
     }
-    const double rise = smooth((impact - piece.fall.lie_s) / kGetUpS);
-    const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / kStopS);
+    const double rise = smooth((impact - piece.fall.lie_s) / kGetUp_s);
+    const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / kStop_s);
     Isometry3d T = mix(mix(up, down, crushed), again, rise);
     const double hop = std::sin(14.0 * impact);
     T.translate(Vector3d(0.0, -0.05 * std::exp(-impact / 0.16) * hop * hop, 0.0));

@@ -9,11 +9,6 @@
 namespace pf::simulator {
 namespace {
 
-/// Limbs of the COCO-18 skeleton.
-constexpr int kLimbs[][2] = {{1, 2}, {2, 3},  {3, 4},   {1, 5},  {5, 6},   {6, 7},
-                             {1, 8}, {8, 9},  {9, 10},  {1, 11}, {11, 12}, {12, 13},
-                             {1, 0}, {0, 14}, {14, 16}, {0, 15}, {15, 17}};
-
 cv::Scalar personColor(int id) {
   static const cv::Scalar colors[] = {{255, 80, 60},  {70, 200, 90},  {80, 130, 255},
                                       {250, 210, 60}, {220, 90, 230}, {70, 220, 220}};
@@ -59,8 +54,8 @@ void drawJoints(const std::vector<PersonTruth>& people, cv::Mat& picture) {
   };
   for (const PersonTruth& person : people) {
     const cv::Scalar color = personColor(person.id);
-    for (const auto& limb : kLimbs) {
-      const auto a = static_cast<std::size_t>(limb[0]), b = static_cast<std::size_t>(limb[1]);
+    for (const auto& [from, to] : kSkeletonLines) {
+      const auto a = static_cast<std::size_t>(from), b = static_cast<std::size_t>(to);
       if (!person.in_view[a] || !person.in_view[b]) continue;
       const bool seen = person.visible[a] && person.visible[b];
       cv::line(picture, pixel(person.joints_px[a]), pixel(person.joints_px[b]), color, seen ? 3 : 1,

@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPersonRadiusM = 0.32;
-constexpr double kCameraRadiusM = 0.55;
+constexpr double kPersonRadius_m = 0.32;
+constexpr double kCameraRadius_m = 0.55;
 
 double turned(double from, double to, double t) {
   return from + t * std::remainder(to - from, 2.0 * M_PI);
@@ -56,9 +56,9 @@ Crowd::Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
   std::vector<Actor> actors;
   for (const auto& person : people) actors.emplace_back(person, walkway);
   tracks_.resize(people.size());
-  const int steps = static_cast<int>(std::ceil(duration_s / kActorStepS)) + 2;
+  const int steps = static_cast<int>(std::ceil(duration_s / kActorStep_s)) + 2;
   for (int step = 0; step < steps; ++step) {
-    const Vector2d lens = camera(step * kActorStepS);
+    const Vector2d lens = camera(step * kActorStep_s);
     std::vector<Vector2d> places;
     for (const auto& actor : actors) places.push_back(actor.bodyPlace());
     for (std::size_t i = 0; i < actors.size(); ++i) {
@@ -68,7 +68,7 @@ Crowd::Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
       }
       actors[i].step(others);
       for (const auto& other : others) {
-        pushOut(actors[i], other, &other == &others[0] ? kCameraRadiusM : 2 * kPersonRadiusM);
+        pushOut(actors[i], other, &other == &others[0] ? kCameraRadius_m : 2 * kPersonRadius_m);
       }
       tracks_[i].push_back(actors[i].state());
     }
@@ -77,7 +77,7 @@ Crowd::Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
 
 ActorState Crowd::at(std::size_t person, double time_s) const {
   const auto& track = tracks_[person];
-  const double x = std::clamp(time_s / kActorStepS, 0.0, static_cast<double>(track.size() - 2));
+  const double x = std::clamp(time_s / kActorStep_s, 0.0, static_cast<double>(track.size() - 2));
   const auto i = static_cast<std::size_t>(x);
   return interpolate(track[i], track[i + 1], x - static_cast<double>(i));
 }

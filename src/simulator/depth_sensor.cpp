@@ -5,15 +5,16 @@
 #include <cmath>
 #include <vector>
 
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "simulator/random.hpp"
 
 namespace pf::simulator {
 namespace {
 
-constexpr double kSteepestRad = 1.53;
+constexpr double kSteepest_rad = 1.53;
 /// The pattern is matched in windows: errors of neighbours hang together over so many pixels.
-constexpr int kWindowPx = 4;
+constexpr int kWindow_px = 4;
 
 /// Random numbers that neighbours share, drawn once for a row.
 class RowLuck {
@@ -24,17 +25,17 @@ class RowLuck {
         out.push_back(gaussian(seed(static_cast<std::uint32_t>(i))));
       }
     };
-    const auto window = static_cast<std::uint32_t>(row / kWindowPx);
+    const auto window = static_cast<std::uint32_t>(row / kWindow_px);
     const auto block = static_cast<std::uint32_t>(row) / 2U;
-    draw(width / kWindowPx + 2, above_, [&](auto i) { return hash(key, i, window); });
-    draw(width / kWindowPx + 2, below_, [&](auto i) { return hash(key, i, window + 1U); });
+    draw(width / kWindow_px + 2, above_, [&](auto i) { return hash(key, i, window); });
+    draw(width / kWindow_px + 2, below_, [&](auto i) { return hash(key, i, window + 1U); });
     draw(width / 2 + 1, across_, [&](auto i) { return hash(key, i, block); });
     draw(width / 2 + 1, along_, [&](auto i) { return hash(hash(key, i, block), 1U); });
   }
 
   /// Smooth noise of unit variance over windows, plus the pixel's own.
   float correlated(int col) const {
-    const float x = static_cast<float>(col) / kWindowPx, y = static_cast<float>(row_) / kWindowPx;
+    const float x = static_cast<float>(col) / kWindow_px, y = static_cast<float>(row_) / kWindow_px;
     const auto ix = static_cast<std::size_t>(x);
     const float tx = x - std::floor(x), ty = y - std::floor(y);
     const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
@@ -62,7 +63,7 @@ struct Slant {
 };
 
 float tiltOf(double theta_rad) {
-  const double theta = std::min(theta_rad, kSteepestRad);
+  const double theta = std::min(theta_rad, kSteepest_rad);
   return static_cast<float>(0.0001 * theta * theta / ((M_PI_2 - theta) * (M_PI_2 - theta)));
 }
 
@@ -74,7 +75,7 @@ const Slant& slantOf(float cosine) {
     for (int i = 0; i <= kSteps; ++i) {
       const double theta = std::acos(static_cast<double>(i) / kSteps);
       slants.push_back({static_cast<float>(theta),
-                        static_cast<float>(lateralSigmaPx(std::min(theta, kSteepestRad))),
+                        static_cast<float>(lateralSigmaPx(std::min(theta, kSteepest_rad))),
                         tiltOf(theta)});
     }
     return slants;
@@ -83,8 +84,6 @@ const Slant& slantOf(float cosine) {
 }
 
 int rounded(float x) { return static_cast<int>(x < 0.0F ? x - 0.5F : x + 0.5F); }
-
-float flatSigmaM(float z_m) { return 0.0012F + 0.0019F * (z_m - 0.4F) * (z_m - 0.4F); }
 
 /// Chance that the pattern is not found: too dark, seen too flat, or mirrored away.
 float dropoutChance(float z, float cosine, float theta, float infrared, float gloss) {
@@ -131,7 +130,7 @@ Source displaced(const DepthView& view, const DepthConfig& config, int col, int 
 }  // namespace
 
 double axialSigmaM(double z_m, double theta_rad) {
-  return flatSigmaM(static_cast<float>(z_m)) + tiltOf(theta_rad) / std::sqrt(std::max(z_m, 0.1));
+  return depthSigma(static_cast<float>(z_m)) + tiltOf(theta_rad) / std::sqrt(std::max(z_m, 0.1));
 }
 
 double lateralSigmaPx(double theta_rad) { return 0.8 + 0.035 * theta_rad / (M_PI_2 - theta_rad); }
@@ -198,7 +197,7 @@ float reported(const Sensing& f, const Source& s, int col, int row, const RowLuc
                     f.view.gloss.at<float>(s.row, s.col));
   if (luck < static_cast<float>(f.config.dropouts) * lost) return 0.0F;
   const float sigma = static_cast<float>(f.config.axial) *
-                      (flatSigmaM(z) + slant.tilt / std::sqrt(std::max(z, 0.1F)));
+                      (depthSigma(z) + slant.tilt / std::sqrt(std::max(z, 0.1F)));
   const float bent = z * (1.0F + 0.5F * z * f.distortion.at(col, row));
   const float seen = std::max(bent + sigma * noise.correlated(col), 0.05F);
   return f.fb_steps / static_cast<float>(std::max(1, rounded(f.fb_steps / seen)));

@@ -14,8 +14,8 @@ using Eigen::Vector3f;
 
 constexpr std::size_t kPacket = 16;
 constexpr int kShadowRays = 4;
-constexpr float kShadowReachM = 1.6F;
-constexpr float kSeenReachM = 9.0F;  // shadows further away are not worth their rays
+constexpr float kShadowReach_m = 1.6F;
+constexpr float kSeenReach_m = 9.0F;  // shadows further away are not worth their rays
 
 /// Calls body(first, count) for packets of [0, total), in parallel.
 template <typename Body>
@@ -33,7 +33,7 @@ void forPackets(std::size_t total, const Body& body) {
 void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& people,
                           const Vector3f& eye, FrameLight& light) const {
   auto places = surface.places;
-  const auto is_far = [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReachM; };
+  const auto is_far = [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReach_m; };
   places.erase(std::remove_if(places.begin(), places.end(), is_far), places.end());
   castShadows(places, people, light);
   light.people.resize(surface.positions.size());
@@ -59,7 +59,7 @@ void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const Pos
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     const Eigen::Vector2f p = mesh.positions[v].head<2>();
     const bool near = std::any_of(places.begin(), places.end(), [&](const auto& place) {
-      return (p - place).squaredNorm() <= kShadowReachM * kShadowReachM;
+      return (p - place).squaredNorm() <= kShadowReach_m * kShadowReach_m;
     });
     if (near) light.shaded.push_back(v);
   }

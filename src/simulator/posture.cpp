@@ -89,7 +89,7 @@ void Poser::poseTrunk() {
   yaw_ = about(static_cast<float>(state_.yaw), Vector3f::UnitZ());
   Vector3f hips(static_cast<float>(state_.at.x()), static_cast<float>(state_.at.y()),
                 static_cast<float>(state_.pelvis_m));
-  hips += yaw_ * Vector3f(-sit * static_cast<float>(kSeatBehindM) * s - 0.13F * crouch, 0, 0);
+  hips += yaw_ * Vector3f(-sit * static_cast<float>(kSeatBehind_m) * s - 0.13F * crouch, 0, 0);
   const float seated = static_cast<float>(state_.seat_m) + 0.095F * s;
   hips.z() += sit * (seated - hips.z());
   hips.z() -= crouch * 0.42F * s;

@@ -75,7 +75,7 @@ class Planner {
     add(Piece::Kind::walk, until, {place_.at + part * d, place_.yaw});
     const double skip = std::min(fall.skip_m, (1.0 - part) * d.norm());
     const Place up{place_.at + skip * d.normalized(), place_.yaw + fall.turn_rad};
-    add(Piece::Kind::fall, kStaggerS + kDropS + fall.lie_s + kGetUpS, up);
+    add(Piece::Kind::fall, kStagger_s + kDrop_s + fall.lie_s + kGetUp_s, up);
     pieces_.back().fall = fall;
     add(Piece::Kind::pause, 1.0, place_);
     return (goal - place_.at).norm() < 0.02;

@@ -9,9 +9,9 @@
 namespace pf::simulator {
 
 // Phases of a fall before it lies and after.
-constexpr double kStaggerS = 0.45;
-constexpr double kDropS = 0.50;
-constexpr double kGetUpS = 2.6;
+constexpr double kStagger_s = 0.45;
+constexpr double kDrop_s = 0.50;
+constexpr double kGetUp_s = 2.6;
 
 /// Where a robot stands and where it faces.
 struct Place {

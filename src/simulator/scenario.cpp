@@ -4,38 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <set>
 
 #include "posefusion/core/error.hpp"
 #include "simulator/scenario_parts.hpp"
-#include "simulator/scenario_texts.hpp"
 
 namespace pf::simulator {
 namespace {
 
 constexpr int kDeepestBase = 8;
-
-/// A key that is given twice would be lost without a word.
-void refuseTwins(const YAML::Node& node, const std::string& where) {
-  std::set<std::string> keys;
-  for (const auto& entry : node) {
-    if (node.IsSequence()) {
-      refuseTwins(entry, where);
-      continue;
-    }
-    const auto key = entry.first.as<std::string>("");
-    if (!keys.insert(key).second) throw InputError(where + ": " + key + " is given twice");
-    refuseTwins(entry.second, where);
-  }
-}
-
-YAML::Node parse(const std::string& text, const std::string& where) {
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw InputError(where + ": is not YAML: " + error.what());
-  }
-}
 
 bool isRobot(const YAML::Node& map) {
   return map["motion"] && map["motion"].IsScalar() && map["motion"].Scalar() == "robot";
@@ -70,9 +46,8 @@ YAML::Node loadTree(const std::string& name, const std::string& beside, int dept
   } else {
     text = scenarioText(name);
   }
-  YAML::Node tree = parse(text, path);
+  YAML::Node tree = parseYaml(text, path);
   if (!tree.IsMap()) throw InputError(path + ": expected keys with values");
-  refuseTwins(tree, path);
   const YAML::Node base = tree["base"];
   if (!base) return tree;
   if (!base.IsScalar()) throw InputError(path + ": base is not a name or file of a scene");
@@ -107,7 +82,7 @@ void assign(YAML::Node tree, const std::string& assignment) {
       next.reset(node[key]);
     }
     if (dot == std::string::npos) {
-      next = parse(value, "--set " + assignment);
+      next = parseYaml(value, "--set " + assignment);
       return;
     }
     path = path.substr(dot + 1);
@@ -131,7 +106,7 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   for (const auto& assignment : changes.assignments) assign(tree, assignment);
   if (changes.duration_s) tree["duration_s"] = *changes.duration_s;
   if (changes.start_s) tree["start_s"] = *changes.start_s;
-  YamlMap map(tree, name_or_file);
+  YamlMap map(tree, name_or_file + ": ");
   Scenario s;
   s.name = map.text("name", name_or_file);
   map.text("about", "");
@@ -153,10 +128,10 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   }
   if (s.people.size() > 30) map.fail("people", "has more than 30 entries");
   readCamera(map.map("camera"), s);
-  YamlMap color = map.map("color"), depth = map.map("depth");
+  YamlFields color(map.map("color")), depth(map.map("depth"));
   visitFields(s.color, color);
   visitFields(s.depth, depth);
-  if (s.depth.min_m >= s.depth.max_m) depth.fail("min_m", "is not less than max_m");
+  if (s.depth.min_m >= s.depth.max_m) map.fail("depth.min_m", "is not less than max_m");
   color.finish();
   depth.finish();
   readTruth(map.map("truth"), s.truth);

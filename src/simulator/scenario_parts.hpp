@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "posefusion/config/yaml_map.hpp"
 #include "simulator/random.hpp"
 #include "simulator/scenario.hpp"
-#include "simulator/yaml_map.hpp"
 
 namespace pf::simulator {
+
+/// The scene file of a scenario of the package. Throws InputError for an unknown name.
+std::string scenarioText(const std::string& name);
+
+/// All names, for messages.
+std::string joinedNames();
 
 RoomSpec readRoom(YamlMap& map);
 ObjectSpec readObject(YamlMap& map, std::uint32_t seed);

@@ -6,7 +6,6 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
-#include "simulator/camera_check.hpp"
 #include "simulator/random.hpp"
 #include "simulator/scene_check.hpp"
 #include "simulator/simulation_state.hpp"
@@ -14,8 +13,8 @@
 namespace pf::simulator {
 namespace {
 
-constexpr std::int64_t kFirstStampNs = 1000000000000;  // 1000 s: a bag cannot begin at zero
-constexpr double kAfterS = 0.05;  // of truth after the last frame: its depth is taken later
+constexpr std::int64_t kFirstStamp_ns = 1000000000000;  // 1000 s: a bag cannot begin at zero
+constexpr double kAfter_s = 0.05;  // of truth after the last frame: its depth is taken later
 
 }  // namespace
 
@@ -64,7 +63,7 @@ Trajectory Simulation::truth(int frames) const {
   const TruthConfig& c = s.scenario.truth;
   Trajectory trajectory;
   const int count =
-      static_cast<int>(std::floor((frames / s.scenario.fps + kAfterS) * c.rate_hz)) + 1;
+      static_cast<int>(std::floor((frames / s.scenario.fps + kAfter_s) * c.rate_hz)) + 1;
   for (int i = 0; i < count; ++i) {
     const double t = s.scenario.start_s + i / c.rate_hz;
     if (c.gap_every_s > 0.0) {
@@ -86,7 +85,7 @@ Trajectory Simulation::truth(int frames) const {
 
 std::vector<Event> Simulation::events(int frames) const {
   const double from = state_->scenario.start_s;
-  const double to = from + frames / state_->scenario.fps + kAfterS;
+  const double to = from + frames / state_->scenario.fps + kAfter_s;
   std::vector<Event> events;
   for (const Event& e : state_->path->events()) {
     if (e.end_s <= from || e.start_s >= to) continue;
@@ -96,7 +95,7 @@ std::vector<Event> Simulation::events(int frames) const {
 }
 
 std::int64_t Simulation::stampOf(double time_s) const {
-  return kFirstStampNs + static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000;
+  return kFirstStamp_ns + static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000;
 }
 
 const World& Simulation::world() const { return state_->world; }

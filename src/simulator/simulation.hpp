@@ -66,6 +66,6 @@ class Simulation {
 };
 
 /// A frame whose picture of the still world moved further than this during the exposure is blurred.
-constexpr double kBlurredPx = 5.0;
+constexpr double kBlurred_px = 5.0;
 
 }  // namespace pf::simulator

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "simulator/surface_nets.hpp"
+
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
-#include "simulator/body_shape.hpp"
 
 namespace pf::simulator {
 namespace {

@@ -2,11 +2,13 @@
 #include "simulator/truth_files.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
+#include "posefusion/io/ply.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -28,27 +30,15 @@ Json personJson(const PersonTruth& person) {
   return {{"id", person.id}, {"name", person.name}, {"pixels", person.pixels}, {"joints", joints}};
 }
 
-struct PlyPoint {
-  Eigen::Vector3f position, normal, color;
-};
-
-void putFloats(std::ostream& out, const Eigen::Vector3f& v) {
-  out.write(reinterpret_cast<const char*>(v.data()), 3 * sizeof(float));
+SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
+                     const Eigen::Vector3f& color) {
+  return {position, normal, {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
 }
 
-void putVertex(std::ostream& out, const PlyPoint& p) {
-  putFloats(out, p.position);
-  putFloats(out, p.normal);
-  for (int c = 0; c < 3; ++c) out.put(static_cast<char>(srgbOf(p.color[c])));
-}
-
-void putHeader(std::ostream& out, std::size_t vertices, std::size_t faces) {
-  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices
-      << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
-         "property float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\n"
-         "property uchar blue\n";
-  if (faces > 0) out << "element face " << faces << "\nproperty list uchar int vertex_indices\n";
-  out << "end_header\n";
+void putPoint(std::ostream& out, const SurfacePoint& point) {
+  std::array<char, kPointBytes> bytes;
+  packPoint(point, bytes.data());
+  out.write(bytes.data(), bytes.size());
 }
 
 /// The surface's colour within a triangle.
@@ -100,7 +90,7 @@ void saveEvents(const std::string& path, const Simulation& simulation,
   for (const FrameRecord& frame : frames) {
     const std::string stamp = formatStamp(frame.stamp_ns);
     if (frame.dropped) events.push_back({{"kind", "dropped"}, {"start", stamp}, {"end", stamp}});
-    if (frame.smear_px > kBlurredPx) {
+    if (frame.smear_px > kBlurred_px) {
       events.push_back({{"kind", "blurred"},
                         {"start", stamp},
                         {"end", stamp},
@@ -136,9 +126,10 @@ void saveSceneMesh(const std::string& path, const World& world) {
     }
   }
   AtomicFile file(path);
-  putHeader(file.stream(), mesh.positions.size(), mesh.triangles.size());
+  file.stream() << plyHeader({{"vertex", mesh.positions.size(), pointProperties()},
+                              {"face", mesh.triangles.size(), {"list uchar int vertex_indices"}}});
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    putVertex(file.stream(), {mesh.positions[v], mesh.normals[v], colors[v]});
+    putPoint(file.stream(), pointOf(mesh.positions[v], mesh.normals[v], colors[v]));
   }
   for (const auto& t : mesh.triangles) {
     file.stream().put(3);
@@ -149,7 +140,7 @@ void saveSceneMesh(const std::string& path, const World& world) {
 
 void saveScenePoints(const std::string& path, const World& world, double spacing_m) {
   const Mesh& mesh = world.mesh;
-  std::vector<PlyPoint> points;
+  std::vector<SurfacePoint> points;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
     const Eigen::Vector3f a = mesh.positions[v[0]], ab = mesh.positions[v[1]] - a,
@@ -159,14 +150,14 @@ void saveScenePoints(const std::string& path, const World& world, double spacing
     for (int i = 0; i < n; ++i) {
       for (int k = 0; i + k < n; ++k) {
         const float u = (i + 0.33F) / n, w = (k + 0.33F) / n;
-        points.push_back({a + u * ab + w * ac, mesh.normals[v[0]],
-                          colorAt(world, t, u, w, static_cast<float>(spacing_m))});
+        points.push_back(pointOf(a + u * ab + w * ac, mesh.normals[v[0]],
+                                 colorAt(world, t, u, w, static_cast<float>(spacing_m))));
       }
     }
   }
   AtomicFile file(path);
-  putHeader(file.stream(), points.size(), 0);
-  for (const PlyPoint& p : points) putVertex(file.stream(), p);
+  file.stream() << plyHeader({{"vertex", points.size(), pointProperties()}});
+  for (const SurfacePoint& p : points) putPoint(file.stream(), p);
   file.commit();
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kCellM = 0.1;
+constexpr double kCell_m = 0.1;
 
 bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
   const double c = std::cos(f.yaw), s = std::sin(f.yaw);
@@ -28,8 +28,8 @@ Walkway::Walkway(const World& world, double clearance_m) {
   for (const auto& room : world.rooms) box.extend(room);
   if (box.isEmpty()) return;
   low_ = box.min().head<2>();
-  columns_ = std::max(1, static_cast<int>(std::ceil(box.sizes().x() / kCellM)));
-  rows_ = std::max(1, static_cast<int>(std::ceil(box.sizes().y() / kCellM)));
+  columns_ = std::max(1, static_cast<int>(std::ceil(box.sizes().x() / kCell_m)));
+  rows_ = std::max(1, static_cast<int>(std::ceil(box.sizes().y() / kCell_m)));
   free_.assign(static_cast<std::size_t>(columns_ * rows_), 0);
   for (int cell = 0; cell < columns_ * rows_; ++cell) {
     const Vector2d p = centreOf(cell);
@@ -47,14 +47,14 @@ Walkway::Walkway(const World& world, double clearance_m) {
 }
 
 int Walkway::cellAt(const Vector2d& p) const {
-  const int col = static_cast<int>(std::floor((p.x() - low_.x()) / kCellM));
-  const int row = static_cast<int>(std::floor((p.y() - low_.y()) / kCellM));
+  const int col = static_cast<int>(std::floor((p.x() - low_.x()) / kCell_m));
+  const int row = static_cast<int>(std::floor((p.y() - low_.y()) / kCell_m));
   if (col < 0 || row < 0 || col >= columns_ || row >= rows_) return -1;
   return row * columns_ + col;
 }
 
 Vector2d Walkway::centreOf(int cell) const {
-  return low_ + kCellM * Vector2d(cell % columns_ + 0.5, cell / columns_ + 0.5);
+  return low_ + kCell_m * Vector2d(cell % columns_ + 0.5, cell / columns_ + 0.5);
 }
 
 bool Walkway::isFree(const Vector2d& p) const {
@@ -75,7 +75,7 @@ Vector2d Walkway::nearestFree(const Vector2d& p) const {
 }
 
 bool Walkway::seesFree(const Vector2d& a, const Vector2d& b) const {
-  const int steps = std::max(1, static_cast<int>((b - a).norm() / (0.1 * kCellM)));
+  const int steps = std::max(1, static_cast<int>((b - a).norm() / (0.1 * kCell_m)));
   for (int i = 0; i <= steps; ++i) {
     if (!isFree(a + (b - a) * (static_cast<double>(i) / steps))) return false;
   }
@@ -104,7 +104,7 @@ std::vector<int> Walkway::search(int from, int to) const {
         if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
         cost[static_cast<std::size_t>(next)] = g;
         parent[static_cast<std::size_t>(next)] = cell;
-        open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCellM, next);
+        open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCell_m, next);
       }
     }
   }

@@ -9,7 +9,7 @@
 namespace pf::simulator {
 
 /// How far the middle of a walker keeps from walls and furniture.
-constexpr double kWalkClearanceM = 0.30;
+constexpr double kWalkClearance_m = 0.30;
 
 /// The floor as cells of 10 cm that people can or cannot walk on.
 class Walkway {

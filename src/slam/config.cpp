@@ -1,36 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/config.hpp"
 
-#include <yaml-cpp/yaml.h>
+#include <fstream>
+#include <iterator>
 
-#include "posefusion/config/field_path.hpp"
+#include "posefusion/config/field_text.hpp"
+#include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace pf {
 namespace {
-
-/// Lists key and value of each field.
-class Lister : public PathVisitor {
- public:
-  void flag(const char* name, bool& value, const char*) override {
-    add(name, value ? "true" : "false");
-  }
-  void number(const char* name, double& value, double, double, const char*) override {
-    add(name, numberText(value));
-  }
-  void integer(const char* name, int& value, int, int, const char*) override {
-    add(name, std::to_string(value));
-  }
-  void text(const char* name, std::string& value, const char*) override { add(name, value); }
-  void choice(const char* name, std::string& value, const std::vector<std::string>&,
-              const char*) override {
-    add(name, value);
-  }
-  std::vector<std::pair<std::string, std::string>> fields;
-
- private:
-  void add(const char* name, const std::string& value) { fields.emplace_back(key(name), value); }
-};
 
 template <typename Group>
 void visitGroup(const char* name, Group& group, FieldVisitor& visitor) {
@@ -50,16 +29,19 @@ void visitFields(Config& config, FieldVisitor& visitor) {
   visitGroup("map", config.map, visitor);
 }
 
+void applyYaml(Config& config, const YAML::Node& node, const std::string& origin) {
+  Config changed = config;
+  YamlFields fields(YamlMap(node, origin + ": "));
+  visitFields(changed, fields);
+  fields.finish();
+  config = changed;
+}
+
 void applyFile(Config& config, const std::string& path) {
-  YAML::Node node;
-  try {
-    node = YAML::LoadFile(path);
-  } catch (const YAML::BadFile&) {
-    throw InputError(path + ": the configuration file cannot be opened");
-  } catch (const YAML::Exception& error) {
-    throw InputError(path + ": not YAML: " + error.what());
-  }
-  applyYaml(config, node, path);
+  std::ifstream in(path);
+  if (!in) throw InputError(path + ": the configuration file cannot be opened");
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  applyYaml(config, parseYaml(text, path), path);
 }
 
 void applyAssignment(Config& config, const std::string& assignment) {
@@ -89,9 +71,16 @@ void applyMode(Config& config, const std::string& mode) {
   if (mode == "elastic") config.pose.detector = "none";
 }
 
+std::string toYaml(const Config& config) {
+  Config copy = config;
+  YamlWriter writer;
+  visitFields(copy, writer);
+  return writer.result();
+}
+
 std::vector<std::pair<std::string, std::string>> listFields(const Config& config) {
   Config copy = config;
-  Lister lister;
+  FieldLister lister;
   visitFields(copy, lister);
   return lister.fields;
 }

@@ -11,7 +11,7 @@
 #include "posefusion/evaluation/track_check.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
-#include "posefusion/io/point_file.hpp"
+#include "posefusion/io/ply.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/plan_picture.hpp"
 #include "posefusion/run/plot.hpp"

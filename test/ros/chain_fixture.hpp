@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "../simulated_sequence.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/stage_messages.hpp"
-#include "synthetic/sequence.hpp"
 
 namespace posefusion_ros {
 
@@ -47,13 +47,10 @@ inline CameraMessages restamped(const CameraMessages& messages, std::int64_t sta
   return copy;
 }
 
-inline pf::SyntheticOptions smallSequence(int frames, bool figure) {
-  pf::SyntheticOptions options;
-  options.frames = frames;
-  options.figure = figure;
-  options.width = 320;
-  options.height = 240;
-  return options;
+/// An empty room, drawn once for all tests of the program.
+inline const pf::SimulatedSequence& emptyRoom() {
+  static const pf::SimulatedSequence drawn("empty_box", 40);
+  return drawn;
 }
 
 inline int outcome(const TrackingStatusMsg& status) { return status.outcome; }

@@ -18,12 +18,12 @@
 namespace posefusion_ros {
 namespace {
 
-using pf::SyntheticSequence;
+using pf::SimulatedSequence;
 using sensor_msgs::ImageConstPtr;
 
 TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   const pf::TemporaryFolder folder;
-  const SyntheticSequence sequence(smallSequence(16, true));
+  const SimulatedSequence sequence("box_walker", 16);
   std::vector<pf::RgbdFrame> frames;
   std::vector<pf::People> people;
   for (int i = 0; i < sequence.frameCount(); ++i) {
@@ -90,7 +90,7 @@ TEST(Chain, PassesTheVerySameMessagesOn) {
     };
     subscribers.push_back(chain.handle().subscribe<sensor_msgs::Image>(topic, 100, note));
   }
-  const SyntheticSequence sequence(smallSequence(3, false));
+  const SimulatedSequence& sequence = emptyRoom();
   std::vector<CameraMessages> sent;  // kept, so that no address is used twice
   for (int i = 0; i < 3; ++i) {
     sent.push_back(toMessages(sequence.frame(i).frame));
@@ -116,7 +116,7 @@ TEST(Chain, LiveEveryFrameIsFusedOrReportedAsDropped) {
   chain.set("queue_size", 2);
   ros::param::set(chain.space() + "/blur_gate/queue_size", 1000);
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(40, false));
+  const SimulatedSequence& sequence = emptyRoom();
   std::vector<CameraMessages> messages;
   for (int i = 0; i < 40; ++i) messages.push_back(toMessages(sequence.frame(i).frame));
   for (int i = 0; i < 40; ++i) {
@@ -155,7 +155,7 @@ TEST(Chain, PosesFollowTheBaseFrameOrAreNotPublished) {
   const auto odometry_subscriber =
       chain.handle().subscribe<nav_msgs::Odometry>(topics::kOdometry, 10, on_odometry);
   const auto tf_subscriber = chain.handle().subscribe<tf2_msgs::TFMessage>("/tf", 10, on_tf);
-  const SyntheticSequence sequence(smallSequence(3, false));
+  const SimulatedSequence& sequence = emptyRoom();
   const auto blind = chain.process(toMessages(sequence.frame(0).frame));
   EXPECT_EQ(outcome(blind), TrackingStatusMsg::FUSED);
   EXPECT_NE(blind.reason.find("test_base"), std::string::npos) << blind.reason;

@@ -9,12 +9,12 @@
 namespace posefusion_ros {
 namespace {
 
-using pf::SyntheticSequence;
+using pf::SimulatedSequence;
 
 TEST(Chain, EveryBadFrameGetsOneStatusThatSaysWhy) {
   Chain chain("bad");
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(12, false));
+  const SimulatedSequence& sequence = emptyRoom();
   int next = 0;
   const auto fresh = [&] { return toMessages(sequence.frame(next++).frame); };
   const auto expectBad = [&](const CameraMessages& messages, const std::string& why) {
@@ -56,7 +56,7 @@ TEST(Chain, EveryBadFrameGetsOneStatusThatSaysWhy) {
 TEST(Chain, DepthWithoutAnythingInItIsReportedAndDoesNoHarm) {
   Chain chain("no_depth");
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(4, false));
+  const SimulatedSequence& sequence = emptyRoom();
   EXPECT_EQ(outcome(chain.process(toMessages(sequence.frame(0).frame))), TrackingStatusMsg::FUSED);
   pf::RgbdFrame empty = sequence.frame(1).frame;
   empty.depth = cv::Mat::zeros(empty.depth.size(), CV_16UC1);
@@ -112,7 +112,7 @@ TEST(Chain, AMissingModelIsNamedInEachStatus) {
   chain.set("pose/detector", std::string("network"));
   chain.set("pose/model", std::string("/nowhere/network.pb"));
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(2, false));
+  const SimulatedSequence& sequence = emptyRoom();
   for (int i = 0; i < 2; ++i) {
     const auto status = chain.process(toMessages(sequence.frame(i).frame));
     EXPECT_EQ(outcome(status), TrackingStatusMsg::NO_DETECTOR);
@@ -127,7 +127,7 @@ TEST(Chain, WithoutAModelItGoesOnWhereToldTo) {
   chain.set("pose/model", std::string("/nowhere/network.pb"));
   chain.set("without_people_if_no_detector", true);
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(1, false));
+  const SimulatedSequence& sequence = emptyRoom();
   EXPECT_EQ(outcome(chain.process(toMessages(sequence.frame(0).frame))), TrackingStatusMsg::FUSED);
 }
 

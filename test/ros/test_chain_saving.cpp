@@ -9,14 +9,14 @@
 namespace posefusion_ros {
 namespace {
 
-using pf::SyntheticSequence;
+using pf::SimulatedSequence;
 
 TEST(Chain, ResetEmptiesTheMapAndSaveTellsWhere) {
   const pf::TemporaryFolder folder;
   Chain chain("services");
   chain.set("output", folder / "out");
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(6, false));
+  const SimulatedSequence& sequence = emptyRoom();
   const auto empty = chain.call("save_map");
   EXPECT_TRUE(empty.success);
   EXPECT_NE(empty.message.find("nothing to save"), std::string::npos);
@@ -43,7 +43,7 @@ TEST(Chain, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
   Chain chain("unwritable");
   chain.set("output", folder / "file");
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(2, false));
+  const SimulatedSequence& sequence = emptyRoom();
   chain.process(toMessages(sequence.frame(0).frame));
   const auto response = chain.call("save_map");
   EXPECT_FALSE(response.success);
@@ -57,7 +57,7 @@ TEST(Chain, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
   Chain chain("jump");
   chain.set("output", folder.str());
   ASSERT_TRUE(chain.load());
-  const SyntheticSequence sequence(smallSequence(3, false));
+  const SimulatedSequence& sequence = emptyRoom();
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 3; ++i) {
       pf::RgbdFrame frame = sequence.frame(i).frame;
@@ -68,8 +68,8 @@ TEST(Chain, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
     }
   }
   ASSERT_TRUE(chain.call("save_map").success);
-  EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 3), "51.");
-  EXPECT_EQ(posesIn(folder / "before_reset_1/trajectory.txt").substr(0, 4), "101.");
+  EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 5), "1050.");
+  EXPECT_EQ(posesIn(folder / "before_reset_1/trajectory.txt").substr(0, 5), "1100.");
   chain.unload();
 }
 

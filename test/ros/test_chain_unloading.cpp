@@ -14,7 +14,7 @@
 namespace posefusion_ros {
 namespace {
 
-using pf::SyntheticSequence;
+using pf::SimulatedSequence;
 
 /// Does something again and again, in a thread of its own.
 class Repeated {
@@ -72,7 +72,7 @@ TEST(ChainUnloading, FusionGoesBeforeARequestHasArrived) {
 TEST(ChainUnloading, EachGoesWhileImagesFlow) {
   Chain chain("images_flow");
   chain.set("lossless", false);
-  const SyntheticSequence sequence(smallSequence(4, true));
+  const SimulatedSequence sequence("box_walker", 4);
   std::vector<CameraMessages> messages;
   for (int i = 0; i < 4; ++i) messages.push_back(toMessages(sequence.frame(i).frame));
   std::int64_t stamp_ns = 1'000'000'000;

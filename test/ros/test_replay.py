@@ -34,8 +34,8 @@ class Replay(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp(prefix="posefusion_replay_")
         cls.bag = cls.folder + "/sequence.bag"
-        cls.call(program("posefusion_make_sequence"), cls.folder + "/sequence", "--frames",
-                 str(FRAMES))
+        cls.call(program("posefusion_simulate"), "box_walker", "--output", cls.folder + "/sequence",
+                 "--duration", f"{FRAMES / 30:.3f}")
         cls.call(program("posefusion_to_bag"), cls.folder + "/sequence", cls.bag)
 
     @classmethod

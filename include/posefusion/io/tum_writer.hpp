@@ -23,6 +23,8 @@ class TumWriter {
   /// Colour as PNG. Depth in metres (CV_32FC1) or CV_16UC1 in the frame's unit. The frame's camera
   /// has to be the writer's. Throws InputError naming the file that cannot be written.
   void add(const RgbdFrame& frame);
+  /// The depth was taken at another moment than the colour.
+  void add(const RgbdFrame& frame, std::int64_t depth_stamp_ns);
 
   /// True pose, mask (CV_8UC1, 255 = person) and people of a frame: call those that there are.
   void addTruth(const StampedPose& pose);

@@ -33,10 +33,30 @@ enum class Joint : int {
 constexpr int kJointCount = 18;
 
 /// Names as in COCO, indexed by Joint ("nose", "neck", "right_shoulder", ...).
-extern const std::array<std::string_view, kJointCount> kJointNames;
+inline constexpr std::array<std::string_view, kJointCount> kJointNames = {
+    "nose",       "neck",       "right_shoulder", "right_elbow", "right_wrist", "left_shoulder",
+    "left_elbow", "left_wrist", "right_hip",      "right_knee",  "right_ankle", "left_hip",
+    "left_knee",  "left_ankle", "right_eye",      "left_eye",    "right_ear",   "left_ear"};
 
-/// Joints that a drawing of a skeleton connects.
-extern const std::array<std::pair<Joint, Joint>, 17> kSkeletonLines;
+/// Limbs: joints that a drawing of a skeleton connects.
+inline constexpr std::array<std::pair<Joint, Joint>, 17> kSkeletonLines = {
+    {{Joint::neck, Joint::right_shoulder},
+     {Joint::right_shoulder, Joint::right_elbow},
+     {Joint::right_elbow, Joint::right_wrist},
+     {Joint::neck, Joint::left_shoulder},
+     {Joint::left_shoulder, Joint::left_elbow},
+     {Joint::left_elbow, Joint::left_wrist},
+     {Joint::neck, Joint::right_hip},
+     {Joint::right_hip, Joint::right_knee},
+     {Joint::right_knee, Joint::right_ankle},
+     {Joint::neck, Joint::left_hip},
+     {Joint::left_hip, Joint::left_knee},
+     {Joint::left_knee, Joint::left_ankle},
+     {Joint::neck, Joint::nose},
+     {Joint::nose, Joint::right_eye},
+     {Joint::right_eye, Joint::right_ear},
+     {Joint::nose, Joint::left_eye},
+     {Joint::left_eye, Joint::left_ear}}};
 
 /// A joint in the image. Shape of the paper's matrix element (u, v, p).
 struct Keypoint {

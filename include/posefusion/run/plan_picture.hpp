@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "posefusion/core/trajectory.hpp"
-#include "posefusion/io/point_file.hpp"
+#include "posefusion/io/ply.hpp"
 
 namespace pf {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulator/yaml_map.hpp"
+#include "posefusion/config/yaml_map.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "posefusion/config/field_text.hpp"
 #include "posefusion/core/error.hpp"
 
-namespace pf::simulator {
+namespace pf {
 namespace {
 
 std::string shortText(const YAML::Node& node) {
@@ -17,17 +17,54 @@ std::string shortText(const YAML::Node& node) {
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
+template <typename Words>
+std::string joined(const Words& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// "scene.yaml: camera." without what only joins it to a key.
+std::string nameOf(const std::string& prefix) {
+  return prefix.substr(0, prefix.find_last_not_of(".:/ ") + 1);
+}
+
+void refuseTwins(const YAML::Node& node, const std::string& origin) {
+  std::set<std::string> keys;
+  for (const auto& entry : node) {
+    if (node.IsSequence()) {
+      refuseTwins(entry, origin);
+      continue;
+    }
+    const auto key = entry.first.as<std::string>("");
+    if (!keys.insert(key).second) throw InputError(origin + ": " + key + " is given twice");
+    refuseTwins(entry.second, origin);
+  }
+}
+
 }  // namespace
 
-YamlMap::YamlMap(const YAML::Node& node, std::string where)
-    : node_(node), where_(std::move(where)) {
+YAML::Node parseYaml(const std::string& text, const std::string& origin) {
+  YAML::Node node;
+  try {
+    node = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw InputError(origin + ": is not YAML: " + error.what());
+  }
+  refuseTwins(node, origin);
+  return node;
+}
+
+YamlMap::YamlMap(const YAML::Node& node, std::string prefix)
+    : node_(!node.IsDefined() || node.IsNull() ? YAML::Node(YAML::NodeType::Map) : node),
+      prefix_(std::move(prefix)) {
   if (!node_.IsMap()) {
-    throw InputError(where_ + " is '" + shortText(node_) + "', expected keys with values");
+    throw InputError(nameOf(prefix_) + " is '" + shortText(node_) + "', expected keys with values");
   }
 }
 
 void YamlMap::fail(const std::string& key, const std::string& what) const {
-  throw InputError(where_ + ": " + key + " " + what);
+  throw InputError(prefix_ + key + " " + what);
 }
 
 bool YamlMap::has(const std::string& key) const {
@@ -51,9 +88,8 @@ double YamlMap::number(const std::string& key, double otherwise, double min, dou
     fail(key, "is '" + shortText(node) + "', expected a number");
   }
   if (!(value >= min && value <= max)) {
-    std::ostringstream limits;
-    limits << min << " to " << max;
-    fail(key, "is " + shortText(node) + ", expected " + limits.str());
+    fail(key,
+         "is " + numberText(value) + ", expected " + numberText(min) + " to " + numberText(max));
   }
   return value;
 }
@@ -79,6 +115,7 @@ bool YamlMap::flag(const std::string& key, bool otherwise) {
 std::string YamlMap::text(const std::string& key, const std::string& otherwise) {
   const YAML::Node node = get(key);
   if (!node) return otherwise;
+  if (node.IsNull()) return "";
   if (!node.IsScalar()) fail(key, "is '" + shortText(node) + "', expected a text");
   return node.Scalar();
 }
@@ -87,9 +124,7 @@ std::string YamlMap::word(const std::string& key, const std::string& otherwise,
                           const std::vector<std::string>& words) {
   const std::string value = text(key, otherwise);
   if (std::find(words.begin(), words.end(), value) != words.end()) return value;
-  std::string known;
-  for (const auto& word : words) known += (known.empty() ? "" : ", ") + word;
-  fail(key, "is '" + value + "', expected one of " + known);
+  fail(key, "is '" + value + "', expected one of " + joined(words));
 }
 
 double YamlMap::angle(const std::string& key, double otherwise_rad) {
@@ -152,7 +187,7 @@ std::vector<Eigen::Vector2d> YamlMap::points(const std::string& key) {
 
 YamlMap YamlMap::map(const std::string& key) {
   const YAML::Node node = get(key);
-  return YamlMap(node ? node : YAML::Node(YAML::NodeType::Map), where_ + ": " + key);
+  return YamlMap(node ? node : YAML::Node(YAML::NodeType::Map), prefix_ + key + ".");
 }
 
 std::vector<YamlMap> YamlMap::maps(const std::string& key) {
@@ -161,19 +196,23 @@ std::vector<YamlMap> YamlMap::maps(const std::string& key) {
   if (!node) return maps;
   if (!node.IsSequence()) fail(key, "is '" + shortText(node) + "', expected a list");
   for (std::size_t i = 0; i < node.size(); ++i) {
-    maps.emplace_back(node[i], where_ + ": " + key + "[" + std::to_string(i) + "]");
+    maps.emplace_back(node[i], prefix_ + key + "[" + std::to_string(i) + "].");
   }
   return maps;
 }
 
-void YamlMap::finish() const {
+std::vector<std::string> YamlMap::unread() const {
+  std::vector<std::string> keys;
   for (const auto& entry : node_) {
     const auto key = entry.first.as<std::string>();
-    if (used_.count(key) != 0) continue;
-    std::string known;
-    for (const auto& word : used_) known += (known.empty() ? "" : ", ") + word;
-    fail(key, "is unknown, expected one of " + known);
+    if (used_.count(key) == 0) keys.push_back(key);
   }
+  return keys;
 }
 
-}  // namespace pf::simulator
+void YamlMap::finish() const {
+  const auto keys = unread();
+  if (!keys.empty()) fail(keys.front(), "is unknown, expected one of " + joined(used_));
+}
+
+}  // namespace pf

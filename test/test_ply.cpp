@@ -3,7 +3,7 @@
 
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
-#include "posefusion/io/point_file.hpp"
+#include "posefusion/io/ply.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
@@ -25,7 +25,7 @@ void saveSmallMap(const std::string& path) {
   saveMap(path, map);
 }
 
-TEST(PointFile, ReadsAMapAndPassesOverWhatItDoesNotNeed) {
+TEST(Ply, ReadsAMapAndPassesOverWhatItDoesNotNeed) {
   TemporaryFolder folder;
   saveSmallMap(folder / "map.ply");
   const auto points = loadPoints(folder / "map.ply");
@@ -37,7 +37,7 @@ TEST(PointFile, ReadsAMapAndPassesOverWhatItDoesNotNeed) {
   EXPECT_EQ(points[2].color[2], 10);
 }
 
-TEST(PointFile, WrongInputIsAnErrorThatNamesTheFile) {
+TEST(Ply, WrongInputIsAnErrorThatNamesTheFile) {
   TemporaryFolder folder;
   saveSmallMap(folder / "map.ply");
   const std::string whole = readFile(folder / "map.ply");
@@ -46,6 +46,8 @@ TEST(PointFile, WrongInputIsAnErrorThatNamesTheFile) {
   };
   EXPECT_NE(said("stl").find("p.ply: has no PLY"), std::string::npos);
   EXPECT_NE(said(whole.substr(0, whole.size() - 1)).find("not whole"), std::string::npos);
+  EXPECT_NE(said(whole.substr(0, whole.find("end_header") + 10)).find("a header without an end"),
+            std::string::npos);
   std::string other = whole;
   other.replace(other.find("red"), 3, "rot");
   EXPECT_NE(said(other).find("no property uchar red"), std::string::npos) << said(other);

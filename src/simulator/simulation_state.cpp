@@ -49,7 +49,7 @@ Simulation::State::State(const Scenario& s)
       lighting(world, caster),
       path(buildPath(s)),
       crowd(
-          s.people, Walkway(world, kWalkClearanceM),
+          s.people, Walkway(world, kWalkClearance_m),
           [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
           s.start_s + s.duration_s + 1.0),
       renderer(world, caster),

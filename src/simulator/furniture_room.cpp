@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kWallThicknessM = 0.12F;
-constexpr float kWallCellM = 0.14F;
+constexpr float kWallThickness_m = 0.12F;
+constexpr float kWallCell_m = 0.14F;
 
 /// A wall in its own frame: x along it, y into the room, z up.
 struct Wall {
@@ -44,29 +44,29 @@ void addPiece(World& world, const Wall& wall, const Surfaces& s, const Eigen::Ve
   // Front towards the room: from b to a, then up.
   addRectangle(world, wall.at, s.wall,
                {Vector3f(b, 0, low), Vector3f(a - b, 0, 0), Vector3f(0, 0, high - low)},
-               kWallCellM);
+               kWallCell_m);
   if (low > 0.0F) return;
   addBox(world, wall.at, s.skirting, {0.5F * (a + b), 0.006F, 0.04F}, {b - a, 0.012F, 0.08F});
 }
 
 /// Cheeks and lintel of an opening, through the thickness of the wall.
 void addReveal(World& world, const Wall& wall, const Surfaces& s, const Eigen::Vector3f& abh) {
-  const float t = kWallThicknessM, h = abh.z();
+  const float t = kWallThickness_m, h = abh.z();
   addRectangle(world, wall.at, s.skirting,
-               {Vector3f(abh.x(), -t, 0), Vector3f(0, t, 0), Vector3f(0, 0, h)}, kWallCellM);
+               {Vector3f(abh.x(), -t, 0), Vector3f(0, t, 0), Vector3f(0, 0, h)}, kWallCell_m);
   addRectangle(world, wall.at, s.skirting,
-               {Vector3f(abh.y(), 0, 0), Vector3f(0, -t, 0), Vector3f(0, 0, h)}, kWallCellM);
+               {Vector3f(abh.y(), 0, 0), Vector3f(0, -t, 0), Vector3f(0, 0, h)}, kWallCell_m);
   addRectangle(world, wall.at, s.skirting,
                {Vector3f(abh.x(), 0, h), Vector3f(0, -t, 0), Vector3f(abh.y() - abh.x(), 0, 0)},
-               kWallCellM);
+               kWallCell_m);
   addRectangle(world, wall.at, s.skirting,
                {Vector3f(abh.x(), -t, 0), Vector3f(abh.y() - abh.x(), 0, 0), Vector3f(0, t, 0)},
-               kWallCellM);
+               kWallCell_m);
 }
 
 /// People may walk through the middle of the opening.
 void addPassage(World& world, const Wall& wall, float a, float b) {
-  const Vector3f middle = wall.at * Vector3f(0.5F * (a + b), -0.5F * kWallThicknessM, 0.0F);
+  const Vector3f middle = wall.at * Vector3f(0.5F * (a + b), -0.5F * kWallThickness_m, 0.0F);
   const Vector3f along = wall.at.linear() * Vector3f::UnitX();
   world.passages.push_back({middle.head<2>().cast<double>(),
                             {std::max(0.1, 0.5 * (b - a) - 0.28), 0.5},
@@ -135,8 +135,8 @@ void addRoom(World& world, const RoomSpec& spec, std::uint32_t seed) {
   const Placement here = Placement::Identity();
   const auto floor = world.material(spec.floor, seed, spec.floor_color.cast<float>());
   const auto ceiling = world.material(spec.ceiling, seed + 1U);
-  addRectangle(world, here, floor, {low, x, y}, kWallCellM);
-  addRectangle(world, here, ceiling, {low + Vector3f(0, size.y(), size.z()), x, -y}, kWallCellM);
+  addRectangle(world, here, floor, {low, x, y}, kWallCell_m);
+  addRectangle(world, here, ceiling, {low + Vector3f(0, size.y(), size.z()), x, -y}, kWallCell_m);
   const Surfaces surfaces{world.material(spec.walls, seed + 2U, spec.wall_color.cast<float>()),
                           world.material("plastic", seed + 3U, Vector3f(0.8F, 0.78F, 0.74F))};
   for (const Wall& wall : wallsOf(spec)) addWall(world, wall, spec, surfaces);

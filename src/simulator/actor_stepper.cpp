@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDoubleSupportS = 0.07;
+constexpr double kDoubleSupport_s = 0.07;
 
 double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
 
@@ -38,10 +38,10 @@ void Stepper::swing(std::size_t side, const Vector2d& at, double yaw, const Vect
   FootState& foot = feet_[side];
   const double speed = velocity.norm();
   const double time = swingTime(speed);
-  s.time_s += kActorStepS;
+  s.time_s += kActorStep_s;
   const double p = std::min(1.0, s.time_s / time);
   // Lands half a stance ahead of where the body will be by then.
-  const double ahead = time * (1.0 - p) + 0.5 * (time + 2.0 * kDoubleSupportS);
+  const double ahead = time * (1.0 - p) + 0.5 * (time + 2.0 * kDoubleSupport_s);
   const Vector2d target = home(side, at, yaw) + ahead * velocity;
   const double yaw_target = yaw + (side == 0 ? 0.10 : -0.10);
   const double e = smooth(p);
@@ -68,7 +68,7 @@ void Stepper::stand(std::size_t side, const Vector2d& at, double yaw) {
 }
 
 void Stepper::step(const Vector2d& at, double yaw, const Vector2d& velocity) {
-  rest_s_ += kActorStepS;
+  rest_s_ += kActorStep_s;
   for (std::size_t side = 0; side < 2; ++side) {
     if (swing_[side].on) {
       swing(side, at, yaw, velocity);
@@ -76,7 +76,7 @@ void Stepper::step(const Vector2d& at, double yaw, const Vector2d& velocity) {
       stand(side, at, yaw);
     }
   }
-  if (swing_[0].on || swing_[1].on || rest_s_ < kDoubleSupportS) return;
+  if (swing_[0].on || swing_[1].on || rest_s_ < kDoubleSupport_s) return;
   const bool moving = velocity.norm() > 0.12;
   double worst = 0.0;
   std::size_t side = 1 - last_;
