@@ -40,7 +40,7 @@ TEST_F(MapperTest, FollowsAHandHeldCamera) {
   Mapper mapper(config());
   for (int i = 0; i < 60; ++i) {
     const TrueFrame truth = room().frame(i);
-    const FrameStatus status = mapper.process(truth.frame, cv::Mat());
+    const FrameStatus status = mapper.process({truth.frame, {}, {}});
     ASSERT_EQ(status.outcome, FrameOutcome::fused) << "frame " << i;
     ASSERT_EQ(status.state, TrackingState::tracking);
     ASSERT_LT(errorM(status, truth), 0.006) << "frame " << i;
@@ -51,7 +51,7 @@ TEST_F(MapperTest, FindsLargerStepsThroughThePyramid) {
   Mapper mapper(config());
   for (int i = 0; i < 60; i += 4) {  // an 8 Hz camera: up to 5 cm and 3 degrees a frame
     const TrueFrame truth = room().frame(i);
-    const FrameStatus status = mapper.process(truth.frame, cv::Mat());
+    const FrameStatus status = mapper.process({truth.frame, {}, {}});
     ASSERT_EQ(status.outcome, FrameOutcome::fused) << "frame " << i;
     ASSERT_LT(errorM(status, truth), 0.012) << "frame " << i;
   }
@@ -75,9 +75,9 @@ TEST_F(MapperTest, ABareWallIsNotTrusted) {
   wall.depth = cv::Mat(240, 320, CV_32FC1, cv::Scalar(1.5));
   wall.color = cv::Mat(240, 320, CV_8UC3, cv::Scalar(128, 128, 128));
   Mapper mapper(config());
-  mapper.process(wall, cv::Mat());
+  mapper.process({wall, {}, {}});
   wall.stamp_ns += 33333333;
-  EXPECT_EQ(mapper.process(wall, cv::Mat()).outcome, FrameOutcome::not_converged);
+  EXPECT_EQ(mapper.process({wall, {}, {}}).outcome, FrameOutcome::not_converged);
 }
 
 TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
@@ -143,10 +143,10 @@ TEST_F(MapperTest, BadInputIsNamedAndChangesNothing) {
 
   RgbdFrame other = next.frame;
   other.camera.fx *= 1.1;
-  status = mapper.process(other, cv::Mat());
+  status = mapper.process({other, {}, {}});
   EXPECT_EQ(status.detail, "the camera or the image size is not that of the frames before");
 
-  EXPECT_EQ(mapper.process(next.frame, cv::Mat()).outcome, FrameOutcome::fused);
+  EXPECT_EQ(mapper.process({next.frame, {}, {}}).outcome, FrameOutcome::fused);
 }
 
 TEST_F(MapperTest, ResetStartsAnewAtThePoseGiven) {
@@ -168,7 +168,7 @@ TEST_F(MapperTest, DepthInMetresAndInMillimetresGiveTheSameMap) {
     ASSERT_EQ(truth.frame.depth.type(), CV_16UC1);
     cv::Mat depth_m;
     depthInMetres(truth.frame, 0.0, 100.0, depth_m);
-    const FrameStatus a = millimetres.process(truth.frame, cv::Mat());
+    const FrameStatus a = millimetres.process({truth.frame, {}, {}});
     const FrameStatus b = metres.process({withDepth(truth, depth_m), {}, {}});
     EXPECT_TRUE(a.T_map_camera.matrix() == b.T_map_camera.matrix());
   }

@@ -35,7 +35,7 @@ SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& nor
   return {position, normal, {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
 }
 
-void putPoint(std::ostream& out, const SurfacePoint& point) {
+void putPoint(std::ostream& out, const pf::SurfacePoint& point) {
   std::array<char, kPointBytes> bytes;
   packPoint(point, bytes.data());
   out.write(bytes.data(), bytes.size());
@@ -140,7 +140,7 @@ void saveSceneMesh(const std::string& path, const World& world) {
 
 void saveScenePoints(const std::string& path, const World& world, double spacing_m) {
   const Mesh& mesh = world.mesh;
-  std::vector<SurfacePoint> points;
+  std::vector<pf::SurfacePoint> points;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
     const Eigen::Vector3f a = mesh.positions[v[0]], ab = mesh.positions[v[1]] - a,
@@ -157,7 +157,7 @@ void saveScenePoints(const std::string& path, const World& world, double spacing
   }
   AtomicFile file(path);
   file.stream() << plyHeader({{"vertex", points.size(), pointProperties()}});
-  for (const SurfacePoint& p : points) putPoint(file.stream(), p);
+  for (const pf::SurfacePoint& p : points) putPoint(file.stream(), p);
   file.commit();
 }
 

@@ -81,7 +81,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
     runPipeline(source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
       report.add(frame);
       observers.add(frame);
-      if (hasPose(frame.status) &&
+      if (frame.status.located &&
           !journal.add({frame.status.stamp_ns, frame.status.T_map_camera}) &&
           !std::exchange(disk_full, true)) {
         progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
