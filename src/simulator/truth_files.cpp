@@ -30,8 +30,8 @@ Json personJson(const PersonTruth& person) {
   return {{"id", person.id}, {"name", person.name}, {"pixels", person.pixels}, {"joints", joints}};
 }
 
-SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
-                     const Eigen::Vector3f& color) {
+pf::SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
+                         const Eigen::Vector3f& color) {
   return {position, normal, {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
 }
 
