@@ -108,7 +108,7 @@ class SurfelMap {
 
   MapConfig config_;
   float block_side_m_;
-  std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
+  std::deque<SurfelBlock> blocks_;                          // a deque moves none when it grows
   std::unordered_map<std::uint64_t, std::uint32_t> index_;  // by packed cell; never iterated
   int frame_ = -1;
   std::size_t memory_ = 0;
