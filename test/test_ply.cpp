@@ -11,8 +11,7 @@ namespace {
 
 /// A map of three stable surfels.
 void saveSmallMap(const std::string& path) {
-  SurfelMap map{MapConfig{}};
-  SurfelArrays& s = map.surfels();
+  SurfelArrays s;
   s.forEachArray([](auto& array) { array.resize(3); });
   for (std::size_t i = 0; i < 3; ++i) {
     s.x[i] = static_cast<float>(i);
@@ -22,6 +21,8 @@ void saveSmallMap(const std::string& path) {
     s.b[i] = 10;
     s.confidence[i] = 100;
   }
+  SurfelMap map(MapConfig{}, 1000.0F);  // all in one block, so that their order stays
+  map.add(s);
   saveMap(path, map);
 }
 
