@@ -18,14 +18,17 @@ constexpr double kMaxExtrapolation_s = 0.2;
 // (squared; 6 degrees of freedom, 1 in 50000 by chance), or small anyway.
 constexpr double kMaxMahalanobis2 = 30.0;
 constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
-// Corners that can overrule an alignment, and an alignment that can overrule corners.
-constexpr int kManyCorners = 40;
-constexpr double kStrongInliers = 0.75, kStrongOverlap = 0.35, kStrongSeenThrough = 0.05;
+// Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
+// follow a person who was not masked. Not so for a step that no robot makes between two frames.
+constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
+constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
 // Part of the model's points that a frame may see through: things are moved, people were fused.
 constexpr double kMaxSeenThrough = 0.25;
 // Dead reckoning: for how long, and at what speed, corners alone give a pose good enough to be
 // told.
 constexpr double kMaxReckoning_s = 0.6;
+constexpr int kManyCorners = 80;
+constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 // After a loss an alignment has to look better than usual, so often in a row, before it is
 // believed.
@@ -80,13 +83,15 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
 }
 
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                           bool forced, const ModelRenderer& render) {
+                           bool forced, const ModelView& view, const ModelRenderer& render) {
   Location location;
+  const bool fused_before = trusted_ns_ == previous_.stamp_ns;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   if (flow.from_ns == previous_.stamp_ns && flow.to_ns == stamp_ns &&
       previous_.depth_m.size() == frame.full_depth_m.size()) {
-    location.motion =
-        estimateMotion(flow, {previous_.depth_m, frame.full_depth_m}, frame.full_camera);
+    location.motion = estimateMotion(
+        flow, {previous_.depth_m, frame.full_depth_m, fused_before ? &view : nullptr},
+        frame.full_camera);
   }
   const PosePrior prior = predict(location.motion, elapsed_s);
   Verdict verdict;
@@ -180,9 +185,8 @@ Localiser::Verdict Localiser::judge(const WorkingFrame& frame, const TrackingRes
   const std::string text = stepText(difference, "from the prediction");
   if (!motion.found) return {FrameOutcome::jumped, text};
   const bool overruled =
-      motion.inliers < kManyCorners &&
       isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
-      isWithin(difference, config_.max_translation_m, config_.max_rotation_rad);
+      isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad);
   if (overruled) return {};
   return {FrameOutcome::disagrees, text};
 }
@@ -211,7 +215,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - trusted_ns_);
   const SparseMotion& motion = location.motion;
   location.located =
-      (motion.found && motion.inliers >= kManyCorners && reckoned_s < kMaxReckoning_s &&
+      (motion.found && motion.inliers >= kManyCorners &&
+       motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
        untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
        isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
   previous_.T_map_camera = prior.T_map_camera;

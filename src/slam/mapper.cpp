@@ -66,7 +66,7 @@ RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
 Location Mapper::State::locate(const StaticFrame& input) {
   const std::int64_t stamp_ns = input.frame.stamp_ns;
   if (map.frame() >= 0) {
-    return localiser.locate(frame, stamp_ns, input.flow, input.forced,
+    return localiser.locate(frame, stamp_ns, input.flow, input.forced, view,
                             [this](const Eigen::Isometry3d& T) { return modelFrom(T); });
   }
   const auto needed =

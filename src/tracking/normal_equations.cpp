@@ -77,8 +77,8 @@ NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel&
   out.geometric_error = sums.value[kernel::kGeometricError];
   out.photometric_error = sums.value[kernel::kPhotometricError];
   std::copy_n(sums.value + kernel::kBrightnessWeight, 5, out.brightness);
-  const double weight = sums.value[kernel::kCostWeight];
-  out.cost = weight > 0 ? sums.value[kernel::kCost] / weight : 0.0;
+  out.cost_weight = sums.value[kernel::kCostWeight];
+  out.cost = out.cost_weight > 0 ? sums.value[kernel::kCost] / out.cost_weight : 0.0;
   out.candidates = sums.value[kernel::kCandidates];
   out.inliers = sums.value[kernel::kInliers];
   out.photometric_inliers = sums.value[kernel::kPhotometricInliers];

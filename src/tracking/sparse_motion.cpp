@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/calib3d.hpp>
 
 #include "posefusion/core/noise.hpp"
@@ -20,17 +21,22 @@ constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
 constexpr float kRansacError_px = 2.5F;
 constexpr int kMaxIterations = 10;
-constexpr double kCornerSigma_px = 0.5;  // of a corner's place, at full size
+static const double kCornerSigma_px = getenv("kCornerSigma_px")
+                                          ? (double)atof(getenv("kCornerSigma_px"))
+                                          : 0.3;  // of a corner's place, at full size
 // Corners without depth are mostly beyond the sensor's range. They tell of the turn, if little of
 // the shift, and are used only where there are few others.
 constexpr double kFar_m = 7.0;
 constexpr double kFarSigma_px = 2.0;
-constexpr int kEnoughNear = 30;
-constexpr double kCauchyScale = 2.0;  // standard deviations
+static const int kEnoughNear = getenv("kEnoughNear") ? (int)atof(getenv("kEnoughNear")) : 30;
+static const double kCauchyScale =
+    getenv("kCauchyScale") ? (double)atof(getenv("kCauchyScale")) : 1.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
-constexpr double kSharedTranslation_m = 0.002;
-constexpr double kSharedRotation_rad = 0.0008;
+static const double kSharedTranslation_m =
+    getenv("kSharedTranslation_m") ? (double)atof(getenv("kSharedTranslation_m")) : 0.002;
+static const double kSharedRotation_rad =
+    getenv("kSharedRotation_rad") ? (double)atof(getenv("kSharedRotation_rad")) : 0.0008;
 
 /// A corner of the earlier frame in space, and where the later frame sees it.
 struct Landmark {
@@ -65,15 +71,27 @@ double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel) {
   return static_cast<double>(static_cast<float>(count) / sum);
 }
 
-std::vector<Landmark> landmarksOf(const SparseFlow& flow, const FlowDepth& depth,
+/// Does something stand at depth z (m) well before a stable surface of the map?
+bool isBeforeMap(const ModelView& view, const PinholeCamera& camera, const cv::Point2f& pixel,
+                 double z) {
+  const int u = static_cast<int>(pixel.x) * view.camera.width / camera.width;
+  const int v = static_cast<int>(pixel.y) * view.camera.height / camera.height;
+  if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) return false;
+  const float known = view.depth_m.at<float>(v, u);
+  const bool stable = known > 0 && (view.stable.empty() || view.stable.at<std::uint8_t>(v, u) != 0);
+  return stable && known - static_cast<float>(z) > 2.0F * surfaceTolerance(known, 5.0F);
+}
+
+std::vector<Landmark> landmarksOf(const SparseFlow& flow, const FlowScene& scene,
                                   const PinholeCamera& camera) {
   std::vector<Landmark> landmarks;
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
     const cv::Point2f &a = flow.before[i], &b = flow.after[i];
-    const double z = smoothDepthAt(depth.before_m, a);
+    const double z = smoothDepthAt(scene.before_m, a);
+    if (z > 0 && scene.view != nullptr && isBeforeMap(*scene.view, camera, a, z)) continue;
     Landmark landmark{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
     landmark.is_far = z <= 0;
-    if (!landmark.is_far) landmark.after_m = smoothDepthAt(depth.after_m, b);
+    if (!landmark.is_far) landmark.after_m = smoothDepthAt(scene.after_m, b);
     landmarks.push_back(landmark);
   }
   return landmarks;
@@ -152,10 +170,10 @@ System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera
 
 }  // namespace
 
-SparseMotion estimateMotion(const SparseFlow& flow, const FlowDepth& depth,
+SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera) {
   SparseMotion motion;
-  std::vector<Landmark> landmarks = landmarksOf(flow, depth, camera);
+  std::vector<Landmark> landmarks = landmarksOf(flow, scene, camera);
   const auto far = std::stable_partition(landmarks.begin(), landmarks.end(),
                                          [](const Landmark& l) { return !l.is_far; });
   const auto near = far - landmarks.begin();

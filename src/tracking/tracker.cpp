@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "posefusion/tracking/normal_equations.hpp"
 
@@ -16,15 +17,20 @@ constexpr double kSmallStep = 1e-4;
 constexpr double kConvergedStep = 2e-3;
 constexpr int kMaxHalvings = 3;
 // Pixels that come and go at the borders move the mean cost by about this.
-constexpr double kCostNoise = 1e-3;
+static const double kCostNoise = getenv("kCostNoise") ? (double)atof(getenv("kCostNoise")) : 1e-3;
 // Residuals of so many standard deviations keep a quarter of their weight on the finest level.
 constexpr float kRobustScale = 3.0F;
 // Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
 // map's ripples): so many pixels of the finest level say as much as one independent measurement.
-constexpr double kPixelsPerMeasurement = 400.0;
+static const double kPixelsPerMeasurement =
+    getenv("kPixelsPerMeasurement") ? (double)atof(getenv("kPixelsPerMeasurement")) : 400.0;
 // Error of a normal (rad): directions with less information than its square times that of the
 // best-known one are fixed by noise alone.
-constexpr double kNormalNoise_rad = 0.05;
+static const double kNormalNoise_rad =
+    getenv("kNormalNoise_rad") ? (double)atof(getenv("kNormalNoise_rad")) : 0.05;
+// A prior so far off (squared, in standard deviations) keeps a quarter of its weight: corners may
+// follow a person who was not masked.
+static const double kPriorScale2 = getenv("kPriorScale2") ? atof(getenv("kPriorScale2")) : 16.0;
 constexpr double kLeverArm_m = 2.0;  // a turn moves the scene by this times its angle
 
 /// The images' word on the pose, with noise taken out, and the prior's.
@@ -63,12 +69,17 @@ struct Prior {
   Matrix6d information;
 };
 
+/// Geman and McClure's weight of the prior.
+double robustWeight(const Vector6d& error, const Prior& prior) {
+  const double root = 1.0 / (1.0 + error.dot(prior.information * error) / kPriorScale2);
+  return root * root;
+}
+
 /// An alignment at work: the pose that fits best so far, and what was found there.
 struct Alignment {
   Eigen::Isometry3d T_frame_view;
   TermSettings settings;
   NormalEquations equations;  ///< at T_frame_view
-  PoseSystem system;
   double last_step = 0;
   int iterations = 0;
   bool solvable = true;
@@ -84,6 +95,15 @@ void adaptPhotometry(const NormalEquations& e, const TrackingConfig& config,
       std::max(config.photometric_sigma, std::sqrt(e.photometric_error / e.photometric_inliers)));
 }
 
+/// What the steps minimise, images and prior, per model point: both are Geman and McClure's.
+double objective(const NormalEquations& e, const Eigen::Isometry3d& T_frame_view, double share,
+                 const Prior& prior, const TermSettings& settings) {
+  const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
+  const double d2 = error.dot(prior.information * error) / kPriorScale2;
+  const double scale2 = settings.robust_scale * settings.robust_scale;
+  return e.cost + kPriorScale2 * d2 / (1.0 + d2) / (share * scale2 * std::max(1.0, e.cost_weight));
+}
+
 void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share, const Prior& prior,
                 const TrackingConfig& config, Alignment& a) {
   const auto evaluate = [&](const Eigen::Isometry3d& T) {
@@ -94,22 +114,29 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
   for (int i = 1; i < config.max_iterations; ++i) {
     a.solvable = a.equations.inliers >= 6;
     if (!a.solvable) return;
-    a.system = combine(a.equations, share, prior.information,
-                       logSe3(a.T_frame_view * prior.T_frame_view.inverse()));
-    Vector6d step = a.system.H.ldlt().solve(-a.system.g);
+    const Vector6d error = logSe3(a.T_frame_view * prior.T_frame_view.inverse());
+    const PoseSystem system =
+        combine(a.equations, share, robustWeight(error, prior) * prior.information, error);
+    Vector6d step = system.H.ldlt().solve(-system.g);
     a.solvable = step.allFinite() && step.norm() < 1.0;
     if (!a.solvable) return;
-    const double before = a.equations.cost;
-    adaptPhotometry(a.equations, config, a.settings);
-    NormalEquations next = evaluate(expSe3(step) * a.T_frame_view);
-    // The first step of a level changes brightness and scale too, so that costs do not compare.
-    for (int k = 0; i > 1 && k < kMaxHalvings && next.cost > before + kCostNoise; ++k) {
+    const double most =
+        objective(a.equations, a.T_frame_view, share, prior, a.settings) + kCostNoise;
+    // Brightness and the scale of its residuals settle first: only then do costs compare.
+    const bool settled = i > 2;
+    if (!settled) adaptPhotometry(a.equations, config, a.settings);
+    Eigen::Isometry3d T = expSe3(step) * a.T_frame_view;
+    NormalEquations next = evaluate(T);
+    bool lower = !settled || objective(next, T, share, prior, a.settings) <= most;
+    for (int k = 0; !lower && k < kMaxHalvings; ++k) {
       step *= 0.5;
-      next = evaluate(expSe3(step) * a.T_frame_view);
+      T = expSe3(step) * a.T_frame_view;
+      next = evaluate(T);
+      lower = objective(next, T, share, prior, a.settings) <= most;
     }
     a.last_step = step.norm();
-    if (i > 1 && next.cost > before + kCostNoise) return;
-    a.T_frame_view = expSe3(step) * a.T_frame_view;
+    if (!lower) return;
+    a.T_frame_view = T;
     a.equations = next;
     if (a.last_step < kSmallStep) return;
   }
@@ -131,7 +158,9 @@ TrackingResult resultOf(const Alignment& a, double share, const Prior& prior,
     result.photometric_rmse = std::sqrt(e.photometric_error / e.photometric_inliers);
   }
   if (!a.solvable) return result;
-  const PoseSystem system = combine(e, share, prior.information, Vector6d::Zero());
+  const Vector6d error = logSe3(a.T_frame_view * prior.T_frame_view.inverse());
+  const PoseSystem system =
+      combine(e, share, robustWeight(error, prior) * prior.information, error);
   result.free_directions = system.free_directions;
   result.converged = a.last_step < kConvergedStep;
   result.covariance = system.H.ldlt().solve(Matrix6d::Identity());

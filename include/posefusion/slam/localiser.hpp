@@ -46,10 +46,10 @@ class Localiser {
   Location begin(const WorkingFrame& frame, std::int64_t stamp_ns,
                  const Eigen::Isometry3d& T_map_camera);
 
-  /// Any later frame. `flow` leads to it from the frame before. A `forced` frame (see BlurScore) is
-  /// not believed enough to be fused.
+  /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
+  /// the last fused frame. A `forced` frame (see BlurScore) is not believed enough to be fused.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                  bool forced, const ModelRenderer& render);
+                  bool forced, const ModelView& view, const ModelRenderer& render);
 
   TrackingState state() const { return state_; }
   /// The last pose of a located frame.

@@ -40,6 +40,7 @@ struct NormalEquations {
   double photometric_error = 0;  ///< sum of squared residuals of the photometric inliers
   double brightness[5] = {};     ///< weighted sums 1, m, y, m m, m y of model (m) and frame (y)
   double cost = 0;               ///< mean robust cost of the candidates, 0 to 1: what is minimised
+  double cost_weight = 0;        ///< sum of the weights that the mean is taken over
   double candidates = 0;         ///< points that fall on a frame pixel with depth
   double inliers = 0;            ///< of them within the gates and 3 standard deviations
   double photometric_inliers = 0;

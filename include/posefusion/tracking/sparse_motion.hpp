@@ -6,6 +6,7 @@
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/frame/flow.hpp"
+#include "posefusion/frame/model_view.hpp"
 
 namespace pf {
 
@@ -19,17 +20,20 @@ struct SparseMotion {
   double rmse_px = 0;  ///< reprojection, over the inliers
 };
 
-/// Depth of a frame at full size, CV_32FC1 in metres, 0 = invalid; people removed.
-struct FlowDepth {
-  const cv::Mat& before_m;
-  const cv::Mat& after_m;
+/// What is known of the corners' surroundings.
+struct FlowScene {
+  const cv::Mat&
+      before_m;  ///< depth of the earlier frame, full size, CV_32FC1 in metres, 0 = invalid
+  const cv::Mat& after_m;  ///< of the later frame; people removed in both
+  const ModelView* view;   ///< the map from the earlier frame's pose; null where there is none
 };
 
-/// Motion from the corners of `flow` that lie on the still world: P3P with RANSAC (Fischler and
-/// Bolles 1981; fixed seed), then least squares over reprojection and inverse depth with Cauchy's
-/// weights. The camera is that of the full image, without distortion. Not found with fewer than a
-/// dozen corners or when less than half of them agree.
-SparseMotion estimateMotion(const SparseFlow& flow, const FlowDepth& depth,
+/// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
+/// of the map: people who were not masked): P3P with RANSAC (Fischler and Bolles 1981; fixed seed),
+/// then least squares over reprojection and inverse depth with Cauchy's weights. The camera is that
+/// of the full image, without distortion. Not found with fewer than a dozen corners or when less
+/// than half of them agree.
+SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera);
 
 }  // namespace pf
