@@ -6,46 +6,10 @@
 
 #include <algorithm>
 
-#include "small_camera.hpp"
+#include "fusion_scene.hpp"
 
 namespace pf {
 namespace {
-
-FrameConfig fullResolution() {
-  FrameConfig config;
-  config.shrink = 1;
-  return config;
-}
-
-/// A wall at `wall_m`, and a board of `grey` before its middle where `board_m` > 0.
-WorkingFrame scene(double wall_m, double board_m = 0, double noise_m = 0, int seed = 0) {
-  RgbdFrame frame;
-  frame.camera = smallCamera();
-  frame.color = cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90));
-  frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(wall_m));
-  const cv::Rect board(60, 40, 40, 40);
-  if (board_m > 0) {
-    frame.depth(board).setTo(board_m);
-    frame.color(board).setTo(cv::Scalar(200, 0, 0));
-  }
-  if (noise_m > 0) {
-    cv::Mat noise(frame.depth.size(), CV_32FC1);
-    cv::RNG random(static_cast<std::uint64_t>(seed) + 17);
-    random.fill(noise, cv::RNG::NORMAL, 0.0, noise_m);
-    frame.depth += noise;
-  }
-  WorkingFrame working;
-  working.assign(frame, cv::Mat(), fullResolution());
-  return working;
-}
-
-const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
-
-std::size_t countNear(const SurfelMap& map, double z, double tolerance = 0.05) {
-  const auto all = map.collect().z;
-  return static_cast<std::size_t>(std::count_if(
-      all.begin(), all.end(), [&](float value) { return std::abs(value - z) < tolerance; }));
-}
 
 /// Bytes that the arrays of a map have reserved.
 std::size_t heldBy(const SurfelMap& map) {
@@ -96,39 +60,16 @@ TEST(Fuser, AveragesNoiseAway) {
   EXPECT_LT(std::sqrt(squares / count), 0.35 * sigma);
 }
 
-TEST(Fuser, WhatWentAwayIsRemovedOnceTheRoomBehindIsSeen) {
-  // Somebody stands before the wall, unmasked, long enough to become stable.
+TEST(Fuser, ColoursComeAtTheExposureOfTheMap) {
   SurfelMap map{MapConfig{}};
-  Fuser fuser;
-  for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0, 1.5), kIdentity, map);
-  ASSERT_GT(countNear(map, 1.5), 1000U);
-  int frames = 0;
-  while (countNear(map, 1.5) > 0 && frames < 60) {
-    fuser.fuse(scene(3.0), kIdentity, map);
-    ++frames;
-  }
-  EXPECT_LE(frames, 20) << "gone within two thirds of a second";
-  EXPECT_GT(countNear(map, 3.0), 17000U) << "and the wall is complete";
-}
-
-TEST(Fuser, WhatIsHiddenBehindSomebodyStays) {
-  SurfelMap map{MapConfig{}};
-  Fuser fuser;
-  for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0), kIdentity, map);
-  const std::size_t wall = countNear(map, 3.0);
-  for (int i = 0; i < 60; ++i) fuser.fuse(scene(3.0, 1.5), kIdentity, map);
-  EXPECT_EQ(countNear(map, 3.0), wall);
-}
-
-TEST(Fuser, MissingDepthIsNoEvidence) {
-  SurfelMap map{MapConfig{}};
-  Fuser fuser;
-  for (int i = 0; i < 15; ++i) fuser.fuse(scene(2.0), kIdentity, map);
-  const std::size_t size = map.size();
-  WorkingFrame nothing = scene(2.0);
-  nothing.depth_m.setTo(0);
-  for (int i = 0; i < 60; ++i) fuser.fuse(nothing, kIdentity, map);
-  EXPECT_EQ(map.size(), size);
+  FusionOptions options;
+  options.gain = 1.5F;
+  options.offset = 10.0F;
+  fuseOften(3, scene(2.0), map, options);
+  EXPECT_NEAR(map.collect().r[5000], 145, 1e-3);
+  options.gain = 10.0F;
+  fuseOften(20, scene(2.0), map, options);
+  EXPECT_LE(map.collect().r[5000], 255.0F);
 }
 
 TEST(Fuser, UnconfirmedSurfelsAreForgotten) {

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/frame/working_frame.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
 namespace {
+
+// Depth past the largest used still tells that the space before it is empty, up to here: no sensor
+// of a robot's measures farther indoors, and some report their largest number for "nothing".
+constexpr double kFarthestM = 15.0;
 
 /// 255 where no pixel of the block belongs to a person.
 void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
@@ -25,8 +30,11 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   full_camera = frame.camera;
   camera = frame.camera.shrunk(config.shrink);
   const cv::Size size(camera.width, camera.height);
-  depthInMetres(frame, config.min_depth_m, config.max_depth_m, full_depth_m);
+  depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthestM), full_depth_m);
   shrinkDepth(full_depth_m, config.shrink, depth_m);
+  cv::threshold(full_depth_m, full_depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
+  cv::threshold(depth_m, beyond_m, config.max_depth_m, 0, cv::THRESH_TOZERO);
+  cv::threshold(depth_m, depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
   valid_pixels = cv::countNonZero(depth_m);
   cv::resize(frame.color, color, size, 0, 0, cv::INTER_AREA);
 

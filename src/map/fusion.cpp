@@ -9,6 +9,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/frame/depth_filter.hpp"
 #include "posefusion/map/visibility.hpp"
 #include "surfel_update.hpp"
 
@@ -40,22 +41,58 @@ void nearestOf3x3(const float* above, const float* row, const float* below, floa
   }
 }
 
-void findFreeSpace(const WorkingFrame& frame, cv::Mat& free_m) {
-  free_m.create(frame.depth_m.size(), CV_32FC1);
-  const cv::Mat& depth = frame.depth_m;
-  parallelFor(depth.rows, 16, [&](std::size_t begin, std::size_t end) {
+/// `seen_m`: depth of the frame, that past the mapped range too.
+void findFreeSpace(const WorkingFrame& frame, cv::Mat& seen_m, cv::Mat& free_m) {
+  cv::max(frame.depth_m, frame.beyond_m, seen_m);
+  free_m.create(seen_m.size(), CV_32FC1);
+  parallelFor(seen_m.rows, 16, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      nearestOf3x3(depth.ptr<float>(std::max(0, v - 1)), depth.ptr<float>(v),
-                   depth.ptr<float>(std::min(depth.rows - 1, v + 1)), free_m.ptr<float>(v),
-                   depth.cols);
+      nearestOf3x3(seen_m.ptr<float>(std::max(0, v - 1)), seen_m.ptr<float>(v),
+                   seen_m.ptr<float>(std::min(seen_m.rows - 1, v + 1)), free_m.ptr<float>(v),
+                   seen_m.cols);
     }
   });
+}
+
+std::string sizeText(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// The depth of people at the size of the working frame; empty when there are none.
+void findPeople(const FusionOptions& options, const cv::Size& size, cv::Mat& person_m) {
+  person_m.release();
+  const cv::Mat& mask = options.person_mask;
+  if (mask.empty()) return;
+  const int factor = mask.cols / size.width;
+  if (factor < 1 || mask.cols / factor != size.width || mask.rows / factor != size.height ||
+      mask.type() != CV_8UC1) {
+    throw InputError("the mask of people is " + sizeText(mask.size()) +
+                     ", expected 8 bits a pixel and a multiple of " + sizeText(size));
+  }
+  if (options.input_depth_m.size() != mask.size() || options.input_depth_m.type() != CV_32FC1) {
+    throw InputError("the input depth is " + sizeText(options.input_depth_m.size()) +
+                     ", expected floats and the size of the mask of people, " +
+                     sizeText(mask.size()));
+  }
+  cv::Mat people_m = cv::Mat::zeros(mask.size(), CV_32FC1);
+  options.input_depth_m.copyTo(people_m, mask);
+  shrinkDepth(people_m, factor, person_m);
+}
+
+/// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
+double reachOf(const cv::Mat& seen_m, const Evidence& evidence) {
+  double seen = 0, person = 0;
+  cv::minMaxLoc(seen_m, nullptr, &seen);
+  if (!evidence.person_m.empty()) cv::minMaxLoc(evidence.person_m, nullptr, &person);
+  const double farthest = std::max(seen, person);
+  return farthest + 2.0 * surfaceTolerance(static_cast<float>(farthest), 5.0F);
 }
 
 }  // namespace
 
 /// What is kept between calls.
 struct Fuser::Scratch {
+  cv::Mat seen_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
@@ -66,9 +103,10 @@ Fuser::~Fuser() = default;
 
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
+  Scratch& s = *scratch_;
+  findPeople(options, frame.depth_m.size(), s.evidence.person_m);
   map.advance();
   FusionCounts counts;
-  Scratch& s = *scratch_;
   update(frame, T_map_camera, options, map, counts);
   counts.removed = clean(map);
   surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence.explained, s.fresh);
@@ -79,19 +117,20 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
 void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                    const FusionOptions& options, SurfelMap& map, FusionCounts& counts) {
   Scratch& s = *scratch_;
-  findFreeSpace(frame, s.evidence.free_m);
-  s.evidence.explained.assign(frame.depth_m.total(), 0);
-  double farthest_m = 0;
-  cv::minMaxLoc(s.evidence.free_m, nullptr, &farthest_m);
-  // A surfel farther than all that was measured can still agree with it.
-  farthest_m += 2.0 * surfaceTolerance(static_cast<float>(farthest_m), 5.0F);
-  s.visible = visibleBlocks(map, frame.camera, T_map_camera, farthest_m);
+  findFreeSpace(frame, s.seen_m, s.evidence.free_m);
+  s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
+  s.visible = visibleBlocks(map, frame.camera, T_map_camera, reachOf(s.seen_m, s.evidence));
   const auto ranges = rangesOf(map, s.visible);
   const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);
   std::vector<SurfelUpdate::Result> results(ranges.size());
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       results[k] = update.update(ranges[k], map.blocks_[ranges[k].block].surfels);
+    }
+  });
+  parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      update.contradict(results[k].layers, map.blocks_[ranges[k].block].surfels);
     }
   });
   for (std::size_t k = 0; k < ranges.size(); ++k) {

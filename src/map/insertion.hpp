@@ -8,13 +8,14 @@
 #include "posefusion/frame/working_frame.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/surfels.hpp"
+#include "surfel_update.hpp"
 
 namespace pf {
 
-/// Makes a surfel of each pixel with depth and normal for which `explained` is 0, row by row.
+/// Makes a surfel of each pixel with depth and normal that is kUnexplained, row by row.
 /// Reuses the memory of `surfels`; `now` is the number of the frame.
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now,
-                          const std::vector<std::uint8_t>& explained, SurfelArrays& surfels);
+                          const std::vector<std::int32_t>& explained, SurfelArrays& surfels);
 
 }  // namespace pf

@@ -5,20 +5,16 @@
 #include <cmath>
 #include <cstring>
 
-#include "disc.hpp"
+#include "disc_maker.hpp"
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/map/visibility.hpp"
-#include "projection.hpp"
 
 namespace pf {
 namespace {
 
 constexpr std::size_t kPixelGrain = 1 << 14;
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
-constexpr float kMaxSplatRadiusPx = 12.0F;
-constexpr float kAlmostOne = 0.9999F;  // int(x + kAlmostOne) rounds x up
 
 /// Discs closer together than this (m) belong to one surface.
 inline float surfaceThickness(float z) { return surfaceTolerance(z, 5.0F); }
@@ -45,104 +41,6 @@ inline void keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
   }
 }
 
-/// The rays through the pixels of a camera.
-struct Rays {
-  explicit Rays(const PinholeCamera& c)
-      : cx(static_cast<float>(c.cx)),
-        cy(static_cast<float>(c.cy)),
-        inverse_fx(1.0F / static_cast<float>(c.fx)),
-        inverse_fy(1.0F / static_cast<float>(c.fy)),
-        width(c.width),
-        height(c.height) {}
-
-  float x(int u) const { return (static_cast<float>(u) - cx) * inverse_fx; }
-  float y(int v) const { return (static_cast<float>(v) - cy) * inverse_fy; }
-
-  float cx, cy, inverse_fx, inverse_fy;
-  int width, height;
-};
-
-/// Calls found(pixel, hit) for each pixel whose ray meets the disc.
-template <typename Found>
-void splat(const Disc& d, const Rays& rays, const Found& found) {
-  for (int v = d.first_v; v <= d.last_v; ++v) {
-    const float ray_y = rays.y(v);
-    for (int u = d.first_u; u <= d.last_u; ++u) {
-      const Hit hit = intersect(d, rays.x(u), ray_y, kNearM);
-      if (hit.depth > 0) found(v * rays.width + u, hit);
-    }
-  }
-}
-
-/// Writes the discs of a range that the camera may see; returns their number.
-class DiscMaker {
- public:
-  DiscMaker(const SurfelMap& map, const RenderOptions& options, const PinholeCamera& camera,
-            const Eigen::Isometry3d& T_map_camera)
-      : map_(map),
-        options_(options),
-        projection_(camera, T_map_camera),
-        to_camera_(T_map_camera.inverse()),
-        rays_(camera) {}
-
-  const Rays& rays() const { return rays_; }
-
-  std::uint32_t make(const SurfelRange& range, Disc* discs) const {
-    const SurfelArrays& s = map_.blocks()[range.block].surfels;
-    ProjectedRange seen;
-    project(s, range, projection_, seen);
-    std::uint32_t count = 0;
-    for (std::uint32_t k = 0; k < range.end - range.begin; ++k) {
-      // A disc that shows its back is not drawn.
-      if (seen.inside[k] == 0 || seen.facing[k] > 0) continue;
-      const std::uint32_t i = range.begin + k;
-      const bool stable = map_.isStable(s, i);
-      if ((!stable && options_.only_stable) || map_.isDead(s, i)) continue;
-      if (options_.age != SurfelAge::all &&
-          map_.isActive(s, i) != (options_.age == SurfelAge::active)) {
-        continue;
-      }
-      Disc& d = discs[count];
-      if (!cover(seen, k, d)) continue;
-      d.x = seen.x[k];
-      d.y = seen.y[k];
-      d.z = seen.z[k];
-      to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], d.nx, d.ny, d.nz);
-      d.offset = seen.facing[k];
-      d.inverse_radius2 = 1.0F / (s.radius[i] * s.radius[i]);
-      d.slot = i;
-      d.stable = stable;
-      ++count;
-    }
-    return count;
-  }
-
- private:
-  /// The pixels that the disc may cover; false for none.
-  bool cover(const ProjectedRange& seen, std::uint32_t k, Disc& d) const {
-    const float reach = std::min(seen.reach[k], kMaxSplatRadiusPx);
-    const float u = seen.u[k], v = seen.v[k];
-    // Casts cut towards zero: rounding down, since nothing below zero is left after max().
-    const float left = std::max(0.0F, u - reach) + kAlmostOne, right = u + reach;
-    const float top = std::max(0.0F, v - reach) + kAlmostOne, bottom = v + reach;
-    if (!(right >= 0 && bottom >= 0 && left < static_cast<float>(rays_.width) &&
-          top < static_cast<float>(rays_.height))) {
-      return false;
-    }
-    d.first_u = static_cast<std::int16_t>(left);
-    d.first_v = static_cast<std::int16_t>(top);
-    d.last_u = static_cast<std::int16_t>(std::min(right, static_cast<float>(rays_.width - 1)));
-    d.last_v = static_cast<std::int16_t>(std::min(bottom, static_cast<float>(rays_.height - 1)));
-    return d.first_u <= d.last_u && d.first_v <= d.last_v;
-  }
-
-  const SurfelMap& map_;
-  const RenderOptions& options_;
-  Projection projection_;
-  RigidMotion to_camera_;
-  Rays rays_;
-};
-
 void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color, ModelView& view) {
   const cv::Size size(camera.width, camera.height);
   view.camera = camera;
@@ -164,8 +62,7 @@ void resolvePixel(const Disc* d, const SurfelArrays* s, const Rays& rays, int u,
                   ModelView& view) {
   const std::uint32_t i = d != nullptr ? d->slot : 0;
   view.stable.at<std::uint8_t>(v, u) = d != nullptr && d->stable ? 1 : 0;
-  view.depth_m.at<float>(v, u) =
-      d != nullptr ? intersect(*d, rays.x(u), rays.y(v), kNearM).depth : 0.0F;
+  view.depth_m.at<float>(v, u) = d != nullptr ? intersect(*d, rays.x(u), rays.y(v)).depth : 0.0F;
   view.normal_x.at<float>(v, u) = d != nullptr ? d->nx : 0.0F;
   view.normal_y.at<float>(v, u) = d != nullptr ? d->ny : 0.0F;
   view.normal_z.at<float>(v, u) = d != nullptr ? d->nz : 0.0F;

@@ -9,6 +9,11 @@
 namespace pf {
 namespace {
 
+// Two layers of one surface, which drift has laid side by side, are parallel and at most this far
+// apart: what is farther is a surface of its own.
+constexpr float kLayerM = 0.10F;
+constexpr float kLayerTolerances = 3.0F;
+constexpr float kParallelCosine = 0.9F;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 
@@ -48,7 +53,7 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
                       static_cast<int>(v + 0.5F),
                       seen.reach[k],
                       seen.facing[k]};
-    if (!updateOne(s, i, place)) continue;
+    if (!updateOne(s, i, place, result)) continue;
     ++result.merged;
     result.moved.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
   }
@@ -56,20 +61,56 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
 }
 
 /// True when this frame supports the surfel.
-bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p) const {
-  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * agreement(p.z)) {
+bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const {
+  const float tolerance = agreement(p.z);
+  if (!evidence_.person_m.empty()) {
+    const float person = evidence_.person_m.at<float>(p.v, p.u);
+    if (person > 0 && std::abs(person - p.z) <= tolerance) {
+      violate(s, i);
+      return false;
+    }
+  }
+  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * tolerance) {
     violate(s, i);
     return false;
   }
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
-  if (std::abs(measured - p.z) > agreement(p.z)) return false;
-  explain(p);
-  merge(s, i, p, measured);
+  const float off = std::abs(measured - p.z);
+  if (off > std::max(tolerance, kLayerM)) return false;
+  const Eigen::Vector3f n = normal(p.u, p.v);
+  Eigen::Vector3f own;
+  to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], own.x(), own.y(), own.z());
+  const float cosine = n.dot(own);
+  if (off > tolerance) {
+    if (isLayer(p, measured, cosine)) {
+      result.layers.push_back({static_cast<std::uint32_t>(i),
+                               static_cast<std::uint32_t>(p.v * frame_.camera.width + p.u)});
+    }
+    return false;
+  }
+  // From behind, it is the other side of a thin board that is measured; unless the surfel is seen
+  // edge-on, and noise turned it away.
+  if (p.facing > 0 && cosine < min_cosine_) return false;
+  explain(p, map_.isStable(s, i) ? s.created[i] : map_.frame());
+  merge(s, i, p, measured, n, cosine);
   return true;
 }
 
-void SurfelUpdate::violate(SurfelArrays& s, std::size_t i) const { ++s.violations[i]; }
+bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
+  return p.facing < 0 && cosine > kParallelCosine &&
+         std::abs(measured - p.z) <= kLayerTolerances * agreement(p.z);
+}
+
+void SurfelUpdate::contradict(const std::vector<Layer>& layers, SurfelArrays& s) const {
+  for (const Layer& layer : layers) {
+    if (evidence_.explained[layer.pixel] < s.created[layer.surfel]) violate(s, layer.surfel);
+  }
+}
+
+void SurfelUpdate::violate(SurfelArrays& s, std::size_t i) const {
+  if (options_.may_remove_stable || !map_.isStable(s, i)) ++s.violations[i];
+}
 
 Eigen::Vector3f SurfelUpdate::normal(int u, int v) const {
   const FrameLevel& level = frame_.levels[0];
@@ -91,7 +132,7 @@ float SurfelUpdate::depthOnRay(const Place& p) const {
   return depth * n.dot(pixel_ray) / cosine;
 }
 
-void SurfelUpdate::explain(const Place& p) const {
+void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
   const float reach = std::max(0.5F, std::min(0.9F * p.reach_px, 6.0F));
   const int first_u = std::max(0, static_cast<int>(std::ceil(p.fu - reach)));
   const int last_u = std::min(frame_.camera.width - 1, static_cast<int>(std::floor(p.fu + reach)));
@@ -99,22 +140,24 @@ void SurfelUpdate::explain(const Place& p) const {
   const int last_v = std::min(frame_.camera.height - 1, static_cast<int>(std::floor(p.fv + reach)));
   for (int v = first_v; v <= last_v; ++v) {
     for (int u = first_u; u <= last_u; ++u) {
-      // Several threads may write the same 1: relaxed atomic stores, plain moves on any CPU.
-      __atomic_store_n(&evidence_.explained[v * frame_.camera.width + u], 1, __ATOMIC_RELAXED);
+      // Several threads may meet here; whichever comes first, the smallest number stays.
+      std::int32_t* pixel = &evidence_.explained[v * frame_.camera.width + u];
+      std::int32_t old = __atomic_load_n(pixel, __ATOMIC_RELAXED);
+      while (made < old && !__atomic_compare_exchange_n(pixel, &old, made, true, __ATOMIC_RELAXED,
+                                                        __ATOMIC_RELAXED)) {
+      }
     }
   }
 }
 
 /// Running weighted mean of depth along the pixel's ray, normal, colour and radius.
-void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured) const {
+void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
+                         const Eigen::Vector3f& n, float cosine) const {
   s.seen[i] = map_.frame();
   s.violations[i] = std::max(0, s.violations[i] - 1);
   s.confidence[i] += 1.0F;
-  const Eigen::Vector3f n = normal(p.u, p.v);
-  Eigen::Vector3f surfel;
-  to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], surfel.x(), surfel.y(), surfel.z());
-  const float cosine = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-  if (n.dot(surfel) < min_cosine_ || cosine < kMinCosine) return;
+  const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+  if (cosine < min_cosine_ || facing < kMinCosine) return;
   const float gain = measurementWeight(measured);
   const float old = std::min(s.weight[i], max_weight_);
   const float share = gain / (old + gain);
@@ -127,7 +170,7 @@ void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float m
   s.g[i] += share * (exposed(color[1], options_) - s.g[i]);
   s.b[i] += share * (exposed(color[2], options_) - s.b[i]);
   // A closer look makes it finer, never coarser.
-  const float radius = footprintRadius(measured, projection_.fx, cosine);
+  const float radius = footprintRadius(measured, projection_.fx, facing);
   if (radius < s.radius[i]) s.radius[i] += share * (radius - s.radius[i]);
 }
 

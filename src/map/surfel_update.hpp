@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "posefusion/core/rigid_motion.hpp"
@@ -13,11 +14,16 @@
 
 namespace pf {
 
+/// Says of a pixel that no surfel agrees with it.
+constexpr std::int32_t kUnexplained = std::numeric_limits<std::int32_t>::max();
+
 /// What a frame says about the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
   cv::Mat person_m;  ///< CV_32FC1: depth of a person, 0 = none; may be empty
-  std::vector<std::uint8_t> explained;  ///< per pixel, 1: some surfel agrees
+  /// Per pixel: the frame in which the oldest stable surfel that agrees with it was made; this
+  /// frame where only unstable ones agree.
+  std::vector<std::int32_t> explained;
 };
 
 /// The update of the surfels of one range from one frame. Threads may share it: each call writes
@@ -28,15 +34,20 @@ class SurfelUpdate {
   SurfelUpdate(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                const FusionOptions& options, const SurfelMap& map, Evidence& evidence);
 
+  /// A surfel close to the measured surface, parallel to it, and yet no part of it.
+  struct Layer {
+    std::uint32_t surfel, pixel;
+  };
   struct Result {
     std::size_t merged = 0;     ///< surfels that this frame supports
     Eigen::AlignedBox3f moved;  ///< the new places of those
-    void operator+=(const Result& other) {
-      merged += other.merged;
-      moved.extend(other.moved);
-    }
+    std::vector<Layer> layers;
   };
   Result update(const SurfelRange& range, SurfelArrays& surfels) const;
+
+  /// To be called after all ranges were updated. Of two layers of one surface, the younger is the
+  /// wrong one: the frame contradicts it.
+  void contradict(const std::vector<Layer>& layers, SurfelArrays& surfels) const;
 
  private:
   /// A surfel in the camera frame.
@@ -47,11 +58,13 @@ class SurfelUpdate {
     float reach_px;  ///< radius
     float facing;    ///< normal . (x, y, z): above 0 it is seen from behind
   };
-  bool updateOne(SurfelArrays& s, std::size_t i, const Place& p) const;
+  bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
+  bool isLayer(const Place& p, float measured, float cosine) const;
   void violate(SurfelArrays& s, std::size_t i) const;
   float depthOnRay(const Place& p) const;
-  void explain(const Place& p) const;
-  void merge(SurfelArrays& s, std::size_t i, const Place& p, float measured) const;
+  void explain(const Place& p, std::int32_t made) const;
+  void merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
+             const Eigen::Vector3f& n, float cosine) const;
   void mergeNormal(SurfelArrays& s, std::size_t i, float share, const Eigen::Vector3f& n) const;
   Eigen::Vector3f normal(int u, int v) const;
 

@@ -15,6 +15,8 @@ namespace {
 constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 // A guess that lies further from the last view than this sees too much that the view does not show.
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
+// Neither tracking nor the segmenter looks at anything farther than 8 m.
+const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
 
 }  // namespace
 
@@ -58,7 +60,7 @@ RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
       logSo3(step.linear()).norm() < kSameViewTurn_rad) {
     return {model, view.T_map_camera};
   }
-  renderer.render(map, frame.camera, T, RenderOptions{}, elsewhere);
+  renderer.render(map, frame.camera, T, kViewOptions, elsewhere);
   model_elsewhere.assign(elsewhere);
   return {model_elsewhere, T};
 }
@@ -86,7 +88,7 @@ void Mapper::State::fuse(const Location& location) {
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
   fuser.fuse(frame, location.T_map_camera, map, options);
-  renderer.render(map, frame.camera, location.T_map_camera, RenderOptions{}, view);
+  renderer.render(map, frame.camera, location.T_map_camera, kViewOptions, view);
   view.stamp_ns = last_stamp_ns;
   model.assign(view, &frame.levels[0]);
 }

@@ -24,6 +24,7 @@ struct FrameLevel {
 struct WorkingFrame {
   PinholeCamera camera;
   cv::Mat depth_m;                         ///< CV_32FC1, shrunk but not smoothed: what is fused
+  cv::Mat beyond_m;                        ///< CV_32FC1, depth past max_depth_m, 0 = none
   cv::Mat color;                           ///< CV_8UC3 R G B
   std::array<FrameLevel, kLevels> levels;  ///< finest first; level 0 has the camera above
   int valid_pixels = 0;                    ///< of depth_m

@@ -25,7 +25,8 @@ inline void visitFields(MapConfig& c, FieldVisitor& v) {
   v.number("max_weight", c.max_weight, 1.0, 1e6,
            "the running mean forgets beyond this weight (measurements at 1 m count 1)");
   v.integer("max_violations", c.max_violations, 1, 200,
-            "a surfel seen through so often (less often supported) is removed");
+            "a surfel is removed when more frames contradict it than this and than have supported "
+            "it (of whom 24 count at most)");
   v.integer("max_unstable_age_frames", c.max_unstable_age_frames, 1, 1000000,
             "an unstable surfel not supported for so long is removed");
   v.integer("active_window_frames", c.active_window_frames, 1, 1000000000,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -54,7 +55,10 @@ class SurfelMap {
   /// Seen through too often, or unstable and not supported for long: gone for fusion and rendering,
   /// though its memory may be swept up some frames later.
   bool isDead(const SurfelArrays& s, std::size_t i) const {
-    if (s.violations[i] > config_.max_violations) return true;
+    // What contradicts a surfel must outweigh what supported it, so that some frames at a wrong
+    // pose do not erase the room; but not more than a second of it, so that furniture can move.
+    const float outweighed = std::min(s.confidence[i], kMostOutweighed);
+    if (static_cast<float>(s.violations[i] - config_.max_violations) > outweighed) return true;
     return !isStable(s, i) && frame_ - s.seen[i] > config_.max_unstable_age_frames;
   }
 
@@ -92,6 +96,8 @@ class SurfelMap {
 
  private:
   friend class Fuser;
+
+  static constexpr float kMostOutweighed = 24;  // frames
 
   /// The block around a point, made when it is new; none when there is no memory for it.
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};

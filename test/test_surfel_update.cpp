@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What frames say about surfels: support, violation of free space, duplicates.
+#include <gtest/gtest.h>
+
+#include "fusion_scene.hpp"
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+TEST(SurfelUpdate, WhatWentAwayIsRemovedOnceTheRoomBehindIsSeen) {
+  // Somebody stands before the wall, unmasked, long enough to become stable.
+  SurfelMap map{MapConfig{}};
+  Fuser fuser;
+  for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0, 1.5), kIdentity, map);
+  ASSERT_GT(countNear(map, 1.5), 1000U);
+  int frames = 0;
+  while (countNear(map, 1.5) > 0 && frames < 60) {
+    fuser.fuse(scene(3.0), kIdentity, map);
+    ++frames;
+  }
+  EXPECT_LE(frames, 30) << "gone within a second";
+  EXPECT_GT(countNear(map, 3.0), 17000U) << "and the wall is complete";
+}
+
+TEST(SurfelUpdate, WhatIsHiddenBehindSomebodyStays) {
+  SurfelMap map{MapConfig{}};
+  Fuser fuser;
+  for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0), kIdentity, map);
+  const std::size_t wall = countNear(map, 3.0);
+  for (int i = 0; i < 60; ++i) fuser.fuse(scene(3.0, 1.5), kIdentity, map);
+  EXPECT_EQ(countNear(map, 3.0), wall);
+}
+
+TEST(SurfelUpdate, MissingDepthIsNoEvidence) {
+  SurfelMap map{MapConfig{}};
+  Fuser fuser;
+  for (int i = 0; i < 15; ++i) fuser.fuse(scene(2.0), kIdentity, map);
+  const std::size_t size = map.size();
+  WorkingFrame nothing = scene(2.0);
+  nothing.depth_m.setTo(0);
+  for (int i = 0; i < 60; ++i) fuser.fuse(nothing, kIdentity, map);
+  EXPECT_EQ(map.size(), size);
+}
+
+TEST(SurfelUpdate, OldFurnitureThatWasMovedGoesWithinTwoSeconds) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(300, scene(3.0, 1.5), map);
+  ASSERT_GT(countNear(map, 1.5), 1000U);
+  fuseOften(60, scene(3.0), map);
+  EXPECT_EQ(countNear(map, 1.5), 0U);
+}
+
+TEST(SurfelUpdate, AFewWrongFramesDoNotEraseWhatManyHaveSeen) {
+  // Ten frames at a pose that is 30 cm off see through the whole room.
+  SurfelMap map{MapConfig{}};
+  fuseOften(60, scene(2.0), map);
+  const std::size_t wall = countNear(map, 2.0);
+  fuseOften(10, scene(2.3), map);
+  EXPECT_EQ(countNear(map, 2.0), wall);
+}
+
+TEST(SurfelUpdate, OnProbationNothingCountsAgainstStableSurfels) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(60, scene(2.0), map);
+  const std::size_t wall = countNear(map, 2.0);
+  FusionOptions probation;
+  probation.may_remove_stable = false;
+  fuseOften(100, scene(2.3), map, probation);
+  EXPECT_EQ(countNear(map, 2.0), wall);
+  map.forEachSurfel([](const SurfelArrays& s, std::size_t i) {
+    if (s.created[i] == 0) {
+      ASSERT_EQ(s.violations[i], 0);
+    }
+  });
+}
+
+TEST(SurfelUpdate, BothSidesOfABoardAreMapped) {
+  // Front face at z = 1.5 seen from the origin; then from behind, its other face 1 cm farther.
+  SurfelMap map{MapConfig{}};
+  fuseOften(15, scene(1.5), map);
+  const std::size_t front = map.size();
+  Eigen::Isometry3d behind = kIdentity;
+  behind.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  behind.translation().z() = 3.01;
+  fuseOften(15, scene(1.5), map, {}, behind);
+  EXPECT_EQ(map.size(), 2 * front) << "the far side has surfels of its own";
+  map.forEachSurfel([](const SurfelArrays& s, std::size_t i) {
+    EXPECT_EQ(s.confidence[i], 15) << "seen from behind is no support";
+    EXPECT_EQ(s.violations[i], 0) << "nor a violation";
+    EXPECT_EQ(s.nz[i] < 0, s.created[i] == 0);
+  });
+}
+
+TEST(SurfelUpdate, DepthBeyondTheRangeSeesThroughWhatIsNearer) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(15, scene(7.0, 1.5), map);
+  ASSERT_GT(countNear(map, 1.5), 1000U);
+  ASSERT_EQ(countNear(map, 7.0), 0U);
+  fuseOften(40, scene(7.0), map);
+  EXPECT_EQ(map.size(), 0U);
+}
+
+TEST(SurfelUpdate, PeopleWhoWereFusedGoWhereTheSegmenterFindsThem) {
+  // Nothing behind the person has depth; a chair at the same depth is beside the mask.
+  const cv::Rect person(60, 40, 20, 40);
+  SurfelMap map{MapConfig{}};
+  fuseOften(30, scene(0.0, 1.5), map);
+  FusionOptions options;
+  options.person_mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  options.person_mask(person).setTo(255);
+  options.input_depth_m = cv::Mat::zeros(120, 160, CV_32FC1);
+  options.input_depth_m(kBoard).setTo(1.5);
+  WorkingFrame masked = scene(0.0, 1.5);
+  masked.depth_m(person).setTo(0);
+  const auto countIn = [&](const cv::Rect& area) {
+    std::size_t count = 0;
+    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+      const Eigen::Vector2d pixel = smallCamera().project(Eigen::Vector3d(s.x[i], s.y[i], s.z[i]));
+      count += area.contains({cvRound(pixel.x()), cvRound(pixel.y())}) ? 1 : 0;
+    });
+    return count;
+  };
+  const cv::Rect chair(80, 40, 20, 40);
+  const std::size_t before = countIn(chair);
+  ASSERT_GT(countIn(person), 700U);
+  fuseOften(45, masked, map, options);
+  EXPECT_EQ(countIn(person), 0U);
+  EXPECT_EQ(countIn(chair), before);
+  options.person_mask = cv::Mat::zeros(60, 80, CV_8UC1);
+  EXPECT_THROW(Fuser().fuse(masked, kIdentity, map, options), InputError);
+}
+
+TEST(SurfelUpdate, TheYoungerOfTwoLayersGoes) {
+  // A wall, seen again for a while from a pose 5 cm off, so that a second layer is made.
+  SurfelMap map{MapConfig{}};
+  fuseOften(30, scene(1.5), map);
+  const std::size_t wall = map.size();
+  fuseOften(15, scene(1.54), map);
+  ASSERT_GT(countNear(map, 1.54, 0.01), wall * 9 / 10) << "neither agreement nor violation";
+  fuseOften(60, scene(1.5), map);
+  EXPECT_EQ(countNear(map, 1.54, 0.01), 0U);
+  EXPECT_EQ(countNear(map, 1.5, 0.01), wall);
+}
+
+TEST(SurfelUpdate, AnOldSurfaceBehindAYoungOneStays) {
+  // A book is put on the table: what it hides is older and stays.
+  SurfelMap map{MapConfig{}};
+  fuseOften(30, scene(1.5), map);
+  const std::size_t table = map.size();
+  fuseOften(60, scene(1.5, 1.455), map);
+  EXPECT_GT(countNear(map, 1.455, 0.01), 1000U);
+  EXPECT_EQ(countNear(map, 1.5, 0.01), table);
+}
+
+}  // namespace
+}  // namespace pf
