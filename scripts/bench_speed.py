@@ -56,6 +56,17 @@ class Speed(Runs):
              *self.network_arguments())
         return json.loads((folder / "summary.json").read_text())["frames_per_second"]
 
+    def big_map(self):
+        """The same views among few and among many surfels: copies of the map they give, out of view."""
+        note("mapping kitchen_static among 0.3 and 4 million surfels")
+        found = json.loads(call(PROGRAMS / "posefusion_big_map", self.options.data / "kitchen_static",
+                                "--repeats", str(self.options.repeats)))
+        for size in ("few", "many"):
+            self.row(f"kitchen_static, {found[size]['surfels']} surfels, tracking and fusion, median",
+                     found[size]["median_ms"], "ms", digits=1)
+        self.row("kitchen_static, 4 M surfels against 0.3 M, tracking and fusion", found["ratio"], "x",
+                 1.2, digits=2)
+
     def gate(self):
         found = json.loads(call(PROGRAMS / "posefusion_gate_check", self.options.data / "kitchen_static"))
         for key, what in (("contrast_halved_s", "contrast halved"), ("dull_wall_s", "a dull wall")):

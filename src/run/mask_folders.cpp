@@ -46,9 +46,15 @@ cv::Mat loadMask(const std::string& path) {
   return mask;
 }
 
+/// Where the masks lie.
+struct MaskFiles {
+  Masks truths, masks;
+};
+
 /// Goes through the sequence for its depth and checks the people that were found.
-void checkFound(const std::string& sequence, const std::string& people_file, const Masks& truths,
-                const Masks& masks, MaskCheck& check) {
+void checkFound(const std::string& sequence, const std::string& people_file, const MaskFiles& files,
+                MaskCheck& check) {
+  const auto& [truths, masks] = files;
   const RecordedPeople people = loadPeople(people_file);
   const auto source = openTumFolder(sequence);
   while (auto next = source->next()) {
@@ -70,8 +76,8 @@ void checkFound(const std::string& sequence, const std::string& people_file, con
 
 MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_folder) {
   const fs::path truth_masks = maskFolderOf(truth_folder);
-  const auto truths = listMasks(truth_masks);
-  const auto masks = listMasks(maskFolderOf(mask_folder));
+  const MaskFiles files{listMasks(truth_masks), listMasks(maskFolderOf(mask_folder))};
+  const auto& [truths, masks] = files;
   const bool is_sequence = fs::exists(fs::path(truth_folder) / "rgb.txt") ||
                            fs::exists(fs::path(truth_folder) / "associations.txt");
   if (truths.empty() && !is_sequence) {
@@ -94,7 +100,7 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
   for (const fs::path& people :
        {fs::path(mask_folder) / "people.json", fs::path(mask_folder) / ".." / "people.json"}) {
     if (!fs::exists(people) || !is_sequence || truths.empty()) continue;
-    checkFound(truth_folder, people.string(), truths, masks, check);
+    checkFound(truth_folder, people.string(), files, check);
     break;
   }
   return check;

@@ -12,6 +12,7 @@ namespace pf {
 namespace {
 
 constexpr int kLegend = 104;
+constexpr double kPathWidth = 2;
 constexpr int kFine = 2;                      // drawn so much larger and scaled down: smooth lines
 constexpr std::int64_t kGapNs = 500'000'000;  // the path is broken at longer ones
 const cv::Scalar kPaper(255, 255, 255), kInk(45, 45, 50), kTruth(30, 30, 30),
@@ -49,17 +50,16 @@ class Pen {
   cv::Mat& image_;
 };
 
-void drawPath(const Trajectory& path, const PlanView& view, const cv::Scalar& color, double width,
-              Pen& pen) {
+void drawPath(const Trajectory& path, const PlanView& view, const cv::Scalar& color, Pen& pen) {
   std::vector<cv::Point2d> points;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (i > 0 && path[i].stamp_ns - path[i - 1].stamp_ns > kGapNs) {
-      pen.line(points, color, width);
+      pen.line(points, color, kPathWidth);
       points.clear();
     }
     points.push_back(view.at(path[i].T_world_camera.translation()));
   }
-  pen.line(points, color, width);
+  pen.line(points, color, kPathWidth);
 }
 
 void drawMarks(const Plan& plan, const PlanView& view, Pen& pen) {
@@ -92,13 +92,13 @@ void drawLegend(const Plan& plan, const PlanView& view, int top, Pen& pen) {
     pen.text(name, {x + 42, y});
     x += 42 + width;
   };
-  const auto stroke = [&](const cv::Scalar& color, double width) {
-    return [&pen, color, width](const cv::Point2d& p) {
-      pen.line({p, {p.x + 32, p.y}}, color, width);
+  const auto stroke = [&](const cv::Scalar& color) {
+    return [&pen, color](const cv::Point2d& p) {
+      pen.line({p, {p.x + 32, p.y}}, color, kPathWidth);
     };
   };
-  entry("truth", 74, stroke(kTruth, 2));
-  entry("estimate", 104, stroke(kEstimate, 2));
+  entry("truth", 74, stroke(kTruth));
+  entry("estimate", 104, stroke(kEstimate));
   entry("wrong pose", 124, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 4, kWrong); });
   entry("start", 74, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 6, kInk); });
   entry("end", 74, [&](const cv::Point2d& p) { pen.square({p.x + 16, p.y}, 5, kInk); });
@@ -134,8 +134,8 @@ cv::Mat drawPlan(const Plan& plan) {
   cv::Mat large;
   cv::resize(room, large, {}, kFine, kFine, cv::INTER_LINEAR);
   Pen pen(large);
-  drawPath(plan.truth, view, kTruth, 2, pen);
-  drawPath(plan.estimate, view, kEstimate, 2, pen);
+  drawPath(plan.truth, view, kTruth, pen);
+  drawPath(plan.estimate, view, kEstimate, pen);
   drawMarks(plan, view, pen);
   drawLegend(plan, view, view.height(), pen);
   cv::Mat picture;

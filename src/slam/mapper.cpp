@@ -147,6 +147,8 @@ ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T
 
 const SurfelMap& Mapper::map() const { return state_->map; }
 
+std::size_t Mapper::add(const SurfelArrays& surfels) { return state_->map.add(surfels); }
+
 void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   State& s = *state_;
   s.map.clear();

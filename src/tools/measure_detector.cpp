@@ -76,12 +76,22 @@ bool judge(const SimulatedFrame& frame, const People& detected, Count& count) {
   return missed;
 }
 
-Count measure(const std::string& name, const ScenarioChanges& changes, int every,
-              PoseDetector& detector, cv::Mat& failures) {
-  Simulation simulation(loadScenario(name, changes));
+/// What is asked.
+struct Options {
+  std::vector<std::string> scenarios;
+  std::string failures_file;
+  int every = 15;
+  ScenarioChanges changes;
+  PoseConfig config;
+};
+
+/// Goes through one scenario; frames that went wrong are added to `failures`.
+Count measure(const std::string& name, const Options& options, PoseDetector& detector,
+              cv::Mat& failures) {
+  Simulation simulation(loadScenario(name, options.changes));
   Count count;
   Progress progress(static_cast<std::size_t>(simulation.frameCount()));
-  for (int i = 0; i < simulation.frameCount(); i += every) {
+  for (int i = 0; i < simulation.frameCount(); i += options.every) {
     simulation.jump();
     const SimulatedFrame frame = simulation.frame(i);
     if (frame.dropped) continue;
@@ -94,45 +104,47 @@ Count measure(const std::string& name, const ScenarioChanges& changes, int every
 
 double percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; }
 
+void print(const std::string& name, const Count& c) {
+  std::printf("%-20s found %d of %d people (%.1f %%), people in %d of %d empty frames (%.1f %%)\n",
+              name.c_str(), c.found, c.people, percent(c.found, c.people), c.empty_with_people,
+              c.empty_frames, percent(c.empty_with_people, c.empty_frames));
+}
+
+void measureAll(const Options& options) {
+  const auto detector = makePoseDetector(options.config, {});
+  Count total;
+  cv::Mat failures;
+  for (const auto& name : options.scenarios) {
+    const Count c = measure(name, options, *detector, failures);
+    print(name, c);
+    total.people += c.people, total.found += c.found;
+    total.empty_frames += c.empty_frames, total.empty_with_people += c.empty_with_people;
+  }
+  print("all", total);
+  if (!options.failures_file.empty() && !failures.empty()) {
+    savePng(options.failures_file, failures);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
       "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a pose\n"
       "network finds 4 joints or more, and the empty frames in which it finds somebody."};
-  std::vector<std::string> scenarios;
-  std::string failures_file;
-  int every = 15;
-  ScenarioChanges changes;
-  PoseConfig config;
-  app.add_option("scenarios", scenarios, "names or scene files")->required();
-  app.add_option("--model", config.model, "weights of the network")->required();
-  app.add_option("--every", every, "looks at every n-th frame")->check(CLI::Range(1, 10000));
-  app.add_option("--duration", changes.duration_s, "seconds")->check(CLI::PositiveNumber);
-  app.add_option("--seed", changes.seed, "of the simulation");
-  app.add_option("--set", changes.assignments, "KEY=VALUE: any value of the scene file")
+  Options o;
+  o.config.every_nth_frame = 1;
+  app.add_option("scenarios", o.scenarios, "names or scene files")->required();
+  app.add_option("--model", o.config.model, "weights of the network")->required();
+  app.add_option("--every", o.every, "looks at every n-th frame")->check(CLI::Range(1, 10000));
+  app.add_option("--duration", o.changes.duration_s, "seconds")->check(CLI::PositiveNumber);
+  app.add_option("--seed", o.changes.seed, "of the simulation");
+  app.add_option("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file")
       ->allow_extra_args(false);
-  app.add_option("--failures", failures_file, "PNG with the first frames that went wrong");
+  app.add_option("--failures", o.failures_file, "PNG with the first frames that went wrong");
   CLI11_PARSE(app, argc, argv);
   try {
-    config.every_nth_frame = 1;
-    const auto detector = makePoseDetector(config, {});
-    Count total;
-    cv::Mat failures;
-    for (const auto& name : scenarios) {
-      const Count c = measure(name, changes, every, *detector, failures);
-      std::printf(
-          "%-20s found %d of %d people (%.1f %%), people in %d of %d empty frames (%.1f %%)\n",
-          name.c_str(), c.found, c.people, percent(c.found, c.people), c.empty_with_people,
-          c.empty_frames, percent(c.empty_with_people, c.empty_frames));
-      total.people += c.people, total.found += c.found;
-      total.empty_frames += c.empty_frames, total.empty_with_people += c.empty_with_people;
-    }
-    std::printf(
-        "%-20s found %d of %d people (%.1f %%), people in %d of %d empty frames (%.1f %%)\n", "all",
-        total.found, total.people, percent(total.found, total.people), total.empty_with_people,
-        total.empty_frames, percent(total.empty_with_people, total.empty_frames));
-    if (!failures_file.empty() && !failures.empty()) savePng(failures_file, failures);
+    measureAll(o);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "posefusion_measure_detector: " << error.what() << "\n";

@@ -14,7 +14,7 @@ namespace {
 
 // A step below this (rad and m) ends a level; on the finest one it is also what "converged" means.
 constexpr double kSmallStep = 1e-4;
-constexpr double kConvergedStep = 2e-3;
+constexpr double kConvergedStep = 4e-3;
 constexpr int kMaxHalvings = 3;
 // Pixels that come and go at the borders move the mean cost by about this.
 static const double kCostNoise = getenv("kCostNoise") ? (double)atof(getenv("kCostNoise")) : 1e-3;

@@ -13,6 +13,7 @@
 namespace pf {
 
 class SurfelMap;
+struct SurfelArrays;
 
 /// A frame without its people, as mapping takes it.
 struct StaticFrame {
@@ -44,6 +45,11 @@ class Mapper {
   ModelView render(const PinholeCamera& camera, const Eigen::Isometry3d& T_map_camera) const;
 
   const SurfelMap& map() const;
+
+  /// Puts known surfels (map frame) into the map, as far as its memory lasts; tells how many. They
+  /// count like fused ones, but do not tell where the camera is: before the first frame the map
+  /// still starts at its pose.
+  std::size_t add(const SurfelArrays& surfels);
 
   /// Forgets everything; the next frame starts a new map at `T_map_camera` (identity at first).
   void reset(const Eigen::Isometry3d& T_map_camera = Eigen::Isometry3d::Identity());
