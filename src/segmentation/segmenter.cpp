@@ -112,8 +112,7 @@ std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const TrackedPerson& tra
   return cells;
 }
 
-/// Lifts a person into the scene. False for people who have no place there, and for what only
-/// looks like a person and has long been part of the map.
+/// Lifts a person into the scene. False: no place is found, or it is a thing that the map holds.
 bool PeopleSegmenter::State::lift(TrackedPerson& tracked, int carry_frames) const {
   tracked.body = liftPerson(tracked.person, evidence.grid, tracked.fresh ? 0.0F : tracked.depth_m);
   Body& body = tracked.body;
