@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMinDepth_m = 0.25;
 constexpr double kMaxDepth_m = 8.0;
-constexpr int kMinMaskCells = 12;          // a smaller mask is nobody
+constexpr std::size_t kMinMaskCells = 12;  // a smaller mask is nobody
 constexpr float kMaxMaskSpread_m = 0.4F;   // in depth, of a carried mask around its person
 constexpr float kUnlabelledFading = 0.6F;  // of the likelihood of joints outside the mask ...
 constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
@@ -112,8 +112,7 @@ std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const TrackedPerson& tra
   return cells;
 }
 
-/// Lifts a person into the scene. False for people who have no place there, and for what only
-/// looks like a person and has long been part of the map.
+/// Lifts a person into the scene. False: no place is found, or it is a thing that the map holds.
 bool PeopleSegmenter::State::lift(TrackedPerson& tracked, int carry_frames) const {
   tracked.body = liftPerson(tracked.person, evidence.grid, tracked.fresh ? 0.0F : tracked.depth_m);
   Body& body = tracked.body;
@@ -129,7 +128,7 @@ bool PeopleSegmenter::State::lift(TrackedPerson& tracked, int carry_frames) cons
   }
   body.anchors = cellsBeforeMap(tracked);
   if (tracked.unseen > carry_frames) return false;
-  if (body.seeds.empty() && static_cast<int>(body.anchors.size()) < kMinMaskCells) return false;
+  if (body.seeds.empty() && body.anchors.size() < kMinMaskCells) return false;
   if (body.depth_m <= 0.0F) body.depth_m = tracked.depth_m;
   body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
   tracked.depth_m = body.depth_m;
@@ -179,12 +178,11 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
     const float cells = static_cast<float>(tracked.cells.size());
     const bool confirmed =
         vote.known > kConfirmedKnown * cells && vote.nearer > kConfirmedNearer * vote.known;
-    tracked.unseen += confirmed ? kConfirmedAgeing : with_map ? kAgeing : kBlindAgeing;
+    const bool blind = !with_map && !tracked.fresh;
+    tracked.unseen += confirmed ? kConfirmedAgeing : blind ? kBlindAgeing : kAgeing;
     fadeLostJoints(evidence.grid, labels, tracked.person);
   }
-  const auto isNobody = [](const TrackedPerson& tracked) {
-    return static_cast<int>(tracked.cells.size()) < kMinMaskCells;
-  };
+  const auto isNobody = [](const TrackedPerson& t) { return t.cells.size() < kMinMaskCells; };
   people.erase(std::remove_if(people.begin(), people.end(), isNobody), people.end());
 }
 
@@ -206,9 +204,9 @@ void PeopleSegmenter::State::finish(const RgbdFrame& frame, int margin_px,
 Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,
                                       const People& people, const ModelView* background,
                                       const std::optional<Eigen::Vector3d>& up_camera) {
+  if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   State& s = *state_;
   Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
-  if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) T_view_camera = s.motion.predict(*background, frame.stamp_ns);
   if (!config_.enabled || (s.people.empty() && people.people.empty())) return result;
