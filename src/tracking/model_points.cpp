@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
@@ -13,9 +12,9 @@ namespace {
 
 // A surfel that so many frames have supported counts fully. Until then it may belong to somebody
 // who moves and was not masked. It never counts for nothing: a turn shows little but new surfels.
-static const float kFullSupportFrames = getenv("kFullSupportFrames") ? (float)atof(getenv("kFullSupportFrames")) : 30.0F;
-static const float kLeastWeight = getenv("kLeastWeight") ? (float)atof(getenv("kLeastWeight")) : 0.2F;
-static const float kFillSupport = getenv("kFillSupport") ? (float)atof(getenv("kFillSupport")) : 1.0F;
+constexpr float kFullSupportFrames = 30.0F;
+constexpr float kLeastWeight = 0.2F;
+constexpr float kFillSupport = 1.0F;
 
 float weightOf(float support) {
   return std::clamp(support * (1.0F / kFullSupportFrames), kLeastWeight, 1.0F);

@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/calib3d.hpp>
 
 #include "posefusion/core/noise.hpp"
@@ -21,22 +20,17 @@ constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
 constexpr float kRansacError_px = 2.5F;
 constexpr int kMaxIterations = 10;
-static const double kCornerSigma_px = getenv("kCornerSigma_px")
-                                          ? (double)atof(getenv("kCornerSigma_px"))
-                                          : 0.3;  // of a corner's place, at full size
+constexpr double kCornerSigma_px = 0.3;  // of a corner's place, at full size
 // Corners without depth are mostly beyond the sensor's range. They tell of the turn, if little of
 // the shift, and are used only where there are few others.
 constexpr double kFar_m = 7.0;
 constexpr double kFarSigma_px = 2.0;
-static const int kEnoughNear = getenv("kEnoughNear") ? (int)atof(getenv("kEnoughNear")) : 30;
-static const double kCauchyScale =
-    getenv("kCauchyScale") ? (double)atof(getenv("kCauchyScale")) : 1.0;  // standard deviations
+constexpr int kEnoughNear = 30;
+constexpr double kCauchyScale = 1.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
-static const double kSharedTranslation_m =
-    getenv("kSharedTranslation_m") ? (double)atof(getenv("kSharedTranslation_m")) : 0.002;
-static const double kSharedRotation_rad =
-    getenv("kSharedRotation_rad") ? (double)atof(getenv("kSharedRotation_rad")) : 0.0008;
+constexpr double kSharedTranslation_m = 0.004;
+constexpr double kSharedRotation_rad = 0.0016;
 
 /// A corner of the earlier frame in space, and where the later frame sees it.
 struct Landmark {
@@ -121,9 +115,9 @@ bool guess(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
 struct System {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
-  double weighted = 0;  ///< sum of weighted squared residuals, in standard deviations
+  double weighted = 0, weights = 0;  ///< sums of weighted squared residuals (in sigmas), of weights
   double squared_px = 0;
-  int inliers = 0, residuals = 0;
+  int inliers = 0;
 };
 
 /// Adds J'wJ and J'wr of one residual in standard deviations.
@@ -131,7 +125,7 @@ void add(const Eigen::Matrix<double, 1, 6>& J, double r, double weight, System& 
   system.H += weight * J.transpose() * J;
   system.g += weight * J.transpose() * r;
   system.weighted += weight * r * r;
-  ++system.residuals;
+  system.weights += weight;
 }
 
 /// For the twist of T_after_before (update exp(twist) * T).
@@ -196,7 +190,8 @@ SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
   if (!motion.found) return motion;
   motion.rmse_px = std::sqrt(system.squared_px / system.inliers);
   motion.T_before_after = T.inverse();
-  const double scale = std::max(1.0, system.weighted / std::max(1, system.residuals - 6));
+  // How much worse than assumed the corners are: blurred, of a misplaced color camera.
+  const double scale = std::max(1.0, system.weighted / system.weights);
   motion.covariance = scale * system.H.ldlt().solve(Matrix6d::Identity());
   motion.covariance.diagonal().head<3>().array() += kSharedTranslation_m * kSharedTranslation_m;
   motion.covariance.diagonal().tail<3>().array() += kSharedRotation_rad * kSharedRotation_rad;

@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
+#include "posefusion/core/noise.hpp"
 #include "posefusion/tracking/normal_equations.hpp"
 
 namespace pf {
@@ -17,21 +17,21 @@ constexpr double kSmallStep = 1e-4;
 constexpr double kConvergedStep = 4e-3;
 constexpr int kMaxHalvings = 3;
 // Pixels that come and go at the borders move the mean cost by about this.
-static const double kCostNoise = getenv("kCostNoise") ? (double)atof(getenv("kCostNoise")) : 1e-3;
+constexpr double kCostNoise = 0.01;
 // Residuals of so many standard deviations keep a quarter of their weight on the finest level.
 constexpr float kRobustScale = 3.0F;
 // Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
 // map's ripples): so many pixels of the finest level say as much as one independent measurement.
-static const double kPixelsPerMeasurement =
-    getenv("kPixelsPerMeasurement") ? (double)atof(getenv("kPixelsPerMeasurement")) : 400.0;
-// Error of a normal (rad): directions with less information than its square times that of the
-// best-known one are fixed by noise alone.
-static const double kNormalNoise_rad =
-    getenv("kNormalNoise_rad") ? (double)atof(getenv("kNormalNoise_rad")) : 0.05;
+constexpr double kPixelsPerMeasurement = 400.0;
+// Error of a normal (rad) per relative error of depth: a normal comes from some pixels'
+// differences. Directions with less information than its square times that of the best-known one
+// are fixed by noise alone.
+constexpr double kNormalNoise = 28.0;
+constexpr double kMaxNormalNoise_rad = 0.12;
 // A prior so far off (squared, in standard deviations) keeps a quarter of its weight: corners may
 // follow a person who was not masked.
-static const double kPriorScale2 = getenv("kPriorScale2") ? atof(getenv("kPriorScale2")) : 16.0;
-constexpr double kLeverArm_m = 2.0;  // a turn moves the scene by this times its angle
+constexpr double kPriorScale2 = 6.0;
+constexpr double kMinLeverArm_m = 0.3;
 
 /// The images' word on the pose, with noise taken out, and the prior's.
 struct PoseSystem {
@@ -40,15 +40,21 @@ struct PoseSystem {
   int free_directions = 0;
 };
 
-/// Leaves of H only what is more than noise; see kNormalNoise_rad. The prior decides the rest.
+/// Leaves of H only what is more than noise; see kNormalNoise. The prior decides the rest.
 PoseSystem combine(const NormalEquations& e, double share, const Matrix6d& prior_information,
                    const Vector6d& prior_error) {
+  const Matrix6d H = e.hessian();
+  // The scene's distance: a turn moves it by this times the angle.
+  const double lever_m = std::max(kMinLeverArm_m, std::sqrt(H.bottomRightCorner<3, 3>().trace() /
+                                                            H.topLeftCorner<3, 3>().trace()));
+  const double normal_noise = std::min(
+      kMaxNormalNoise_rad, kNormalNoise * depthSigma(static_cast<float>(lever_m)) / lever_m);
   Vector6d scale = Vector6d::Ones();
-  scale.tail<3>().setConstant(1.0 / kLeverArm_m);
+  scale.tail<3>().setConstant(1.0 / lever_m);
   const Matrix6d S = scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(S * e.hessian() * S);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(S * H * S);
   const Vector6d& values = eigen.eigenvalues();
-  const double floor = kNormalNoise_rad * kNormalNoise_rad * values[5];
+  const double floor = normal_noise * normal_noise * values[5];
   Vector6d kept;
   PoseSystem system;
   for (int i = 0; i < 6; ++i) {
