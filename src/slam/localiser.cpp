@@ -139,9 +139,9 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
                percentOf(frame.valid_pixels, pixels, "of the pixels have depth")};
     return best;
   }
-  const auto attempt = [&](const Eigen::Isometry3d& guess) {
+  const auto attempt = [&](const Eigen::Isometry3d& guess, bool firm) {
     const RenderedModel model = render(guess);
-    const TrackingStart start{model.T_map_view, guess, prior, brightness_};
+    const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm};
     const TrackingResult result = track(frame, model.points, start, config_);
     const Verdict found = judge(frame, result, prior, motion);
     const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
@@ -150,15 +150,18 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
     verdict = found;
     return found.outcome == FrameOutcome::fused;
   };
-  if (attempt(prior.T_map_camera) || state_ == TrackingState::lost) return best;
+  if (attempt(prior.T_map_camera, false)) return best;
+  // The images may have slid along a wall: hold the corners' motion where it is known.
+  if (motion.found && attempt(prior.T_map_camera, true)) return best;
+  if (state_ == TrackingState::lost) return best;
   if (config_.rotation_prealignment) {
     const FrameLevel& coarse = frame.levels[kLevels - 1];
     Eigen::Isometry3d turned = previous_.T_map_camera;
     turned.linear() *=
         alignRotation(previous_.small, {coarse.intensity, coarse.still}, coarse.camera).transpose();
-    if (attempt(turned)) return best;
+    if (attempt(turned, false)) return best;
   }
-  attempt(previous_.T_map_camera);
+  attempt(previous_.T_map_camera, false);
   return best;
 }
 

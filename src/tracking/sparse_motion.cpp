@@ -29,8 +29,8 @@ constexpr int kEnoughNear = 30;
 constexpr double kCauchyScale = 1.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
-constexpr double kSharedTranslation_m = 0.004;
-constexpr double kSharedRotation_rad = 0.0016;
+constexpr double kSharedTranslation_m = 0.003;
+constexpr double kSharedRotation_rad = 0.0012;
 
 /// A corner of the earlier frame in space, and where the later frame sees it.
 struct Landmark {

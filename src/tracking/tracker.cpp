@@ -22,7 +22,7 @@ constexpr double kCostNoise = 0.01;
 constexpr float kRobustScale = 3.0F;
 // Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
 // map's ripples): so many pixels of the finest level say as much as one independent measurement.
-constexpr double kPixelsPerMeasurement = 400.0;
+constexpr double kPixelsPerMeasurement = 800.0;
 // Error of a normal (rad) per relative error of depth: a normal comes from some pixels'
 // differences. Directions with less information than its square times that of the best-known one
 // are fixed by noise alone.
@@ -30,7 +30,7 @@ constexpr double kNormalNoise = 28.0;
 constexpr double kMaxNormalNoise_rad = 0.12;
 // A prior so far off (squared, in standard deviations) keeps a quarter of its weight: corners may
 // follow a person who was not masked.
-constexpr double kPriorScale2 = 6.0;
+constexpr double kPriorScale2 = 16.0;
 constexpr double kMinLeverArm_m = 0.3;
 
 /// The images' word on the pose, with noise taken out, and the prior's.
@@ -73,10 +73,12 @@ PoseSystem combine(const NormalEquations& e, double share, const Matrix6d& prior
 struct Prior {
   Eigen::Isometry3d T_frame_view;
   Matrix6d information;
+  bool is_firm;
 };
 
 /// Geman and McClure's weight of the prior.
 double robustWeight(const Vector6d& error, const Prior& prior) {
+  if (prior.is_firm) return 1.0;
   const double root = 1.0 / (1.0 + error.dot(prior.information * error) / kPriorScale2);
   return root * root;
 }
@@ -106,8 +108,9 @@ double objective(const NormalEquations& e, const Eigen::Isometry3d& T_frame_view
                  const Prior& prior, const TermSettings& settings) {
   const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
   const double d2 = error.dot(prior.information * error) / kPriorScale2;
+  const double bounded = prior.is_firm ? d2 : d2 / (1.0 + d2);
   const double scale2 = settings.robust_scale * settings.robust_scale;
-  return e.cost + kPriorScale2 * d2 / (1.0 + d2) / (share * scale2 * std::max(1.0, e.cost_weight));
+  return e.cost + kPriorScale2 * bounded / (share * scale2 * std::max(1.0, e.cost_weight));
 }
 
 void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share, const Prior& prior,
@@ -184,7 +187,7 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   a.settings.brightness = start.brightness;
   a.T_frame_view = start.T_map_camera.inverse() * start.T_map_view;
   const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
-                    start.prior.covariance.ldlt().solve(Matrix6d::Identity())};
+                    start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm};
   double share = 1.0;
   for (int i = kLevels - 1; i >= 0; --i) {
     // Coarse levels start further away: what is an outlier there may be an inlier later.
