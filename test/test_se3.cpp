@@ -47,5 +47,14 @@ TEST(Se3, OrthonormalisedRepairsADriftedRotation) {
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
 }
 
+TEST(Se3, AdjointMovesATwistToAnotherFrame) {
+  Vector6d pose, twist;
+  pose << 0.3, -0.2, 1.5, 0.4, 0.7, -0.3;
+  twist << 0.01, 0.02, -0.03, 0.02, -0.01, 0.015;
+  const Eigen::Isometry3d T = expSe3(pose);
+  const Eigen::Isometry3d expected = T * expSe3(twist) * T.inverse();
+  EXPECT_TRUE(expSe3(adjoint(T) * twist).isApprox(expected, 1e-12));
+}
+
 }  // namespace
 }  // namespace pf

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/frame/flow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+namespace pf {
+namespace {
+
+/// Smooth noise, so that every place looks different, shifted by (dx, dy) pixels.
+RgbdFrame frameOf(double dx, double dy, std::int64_t stamp_ns, const cv::Size& size = {640, 480}) {
+  cv::Mat noise(600, 760, CV_8UC3);
+  cv::RNG random(7);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(noise, noise, {}, 4.0);
+  cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
+  const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, dx - 40, 0, 1, dy - 40);
+  RgbdFrame frame;
+  frame.stamp_ns = stamp_ns;
+  cv::warpAffine(noise, frame.color, shift, size);
+  return frame;
+}
+
+TEST(Flow, FollowsAShiftToATenthOfAPixel) {
+  FlowTracker tracker;
+  EXPECT_TRUE(tracker.advance(frameOf(0, 0, 1)).empty());
+  const SparseFlow& flow = tracker.advance(frameOf(7.5, -4.25, 2));
+  EXPECT_EQ(flow.from_ns, 1);
+  EXPECT_EQ(flow.to_ns, 2);
+  ASSERT_GT(flow.before.size(), 100U);
+  ASSERT_EQ(flow.before.size(), flow.after.size());
+  for (std::size_t i = 0; i < flow.before.size(); ++i) {
+    EXPECT_NEAR(flow.after[i].x - flow.before[i].x, 7.5, 0.3);
+    EXPECT_NEAR(flow.after[i].y - flow.before[i].y, -4.25, 0.3);
+  }
+  const FollowedPoints points = tracker.follow({{200, 150}, {430, 333}});
+  ASSERT_EQ(points.found[0], 1);
+  EXPECT_NEAR(points.after[1].x, 437.5, 0.3);
+  EXPECT_NEAR(points.after[1].y, 328.75, 0.3);
+}
+
+TEST(Flow, CornersOfOnePosterDoNotKeepTheOtherCellsEmpty) {
+  RgbdFrame frame = frameOf(0, 0, 1);
+  cv::Mat faint;
+  frame.color.convertTo(faint, CV_8UC3, 0.02, 100);  // everywhere but on the poster
+  const cv::Rect poster(400, 100, 180, 160);
+  frame.color(poster).copyTo(faint(poster));
+  frame.color = faint;
+  FlowTracker tracker;
+  tracker.advance(frame);
+  frame.stamp_ns = 2;
+  const SparseFlow& flow = tracker.advance(frame);
+  int outside = 0;
+  for (const cv::Point2f& p : flow.before) outside += poster.contains(cv::Point(p)) ? 0 : 1;
+  EXPECT_GT(outside, 30);
+}
+
+TEST(Flow, NothingIsFollowedOverAChangeOfSizeOrAReset) {
+  FlowTracker tracker;
+  tracker.advance(frameOf(0, 0, 1));
+  EXPECT_TRUE(tracker.advance(frameOf(0, 0, 2, {320, 240})).empty());
+  EXPECT_EQ(tracker.follow({{5, 5}}).found[0], 1) << "320 pixels wide both in the pyramid";
+  tracker.reset();
+  EXPECT_TRUE(tracker.advance(frameOf(0, 0, 3)).empty());
+}
+
+}  // namespace
+}  // namespace pf

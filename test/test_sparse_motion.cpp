@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/tracking/sparse_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace pf {
+namespace {
+
+PinholeCamera vga() {
+  PinholeCamera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 525;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  return camera;
+}
+
+/// A wall that leans, with corners on it, seen by two cameras; some corners belong to somebody who
+/// walks.
+class SparseMotionTest : public ::testing::Test {
+ protected:
+  static constexpr double kWall_m = 2.5;
+
+  SparseMotionTest() {
+    Vector6d twist;
+    twist << 0.02, -0.01, 0.015, 0.01, 0.03, -0.005;
+    T_before_after_ = expSe3(twist);
+    before_m_ = depthFrom(Eigen::Isometry3d::Identity());
+    after_m_ = depthFrom(T_before_after_);
+    flow_.from_ns = 1;
+    flow_.to_ns = 2;
+  }
+
+  /// Depth along a ray (camera at T) of the plane z = kWall_m + 0.3 x.
+  static double hit(const Eigen::Isometry3d& T, const Eigen::Vector3d& ray) {
+    const Eigen::Vector3d o = T.translation(), d = T.linear() * ray;
+    return (kWall_m + 0.3 * o.x() - o.z()) / (d.z() - 0.3 * d.x());
+  }
+
+  cv::Mat depthFrom(const Eigen::Isometry3d& T) const {
+    cv::Mat depth(camera_.height, camera_.width, CV_32FC1);
+    for (int v = 0; v < depth.rows; ++v) {
+      for (int u = 0; u < depth.cols; ++u) {
+        depth.at<float>(v, u) = static_cast<float>(hit(T, camera_.unproject(u, v, 1.0)));
+      }
+    }
+    return depth;
+  }
+
+  /// `count` corners of the wall, and `walking` that move by 6 pixels more than the wall does.
+  void addCorners(int count, int walking, double noise_px) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> column(40, 600), row(40, 440);
+    std::normal_distribution<double> noise(0.0, noise_px);
+    for (int i = 0; i < count + walking; ++i) {
+      const double u = column(random), v = row(random);
+      const Eigen::Vector3d ray = camera_.unproject(u, v, 1.0);
+      const Eigen::Vector3d point = ray * hit(Eigen::Isometry3d::Identity(), ray);
+      const Eigen::Vector2d seen = camera_.project(T_before_after_.inverse() * point);
+      const double walk = i < count ? 0.0 : 6.0;
+      flow_.before.emplace_back(u, v);
+      flow_.after.emplace_back(seen.x() + walk + noise(random), seen.y() + noise(random));
+    }
+  }
+
+  SparseMotion estimate(const ModelView* view = nullptr) const {
+    return estimateMotion(flow_, {before_m_, after_m_, view}, camera_);
+  }
+
+  Vector6d error(const SparseMotion& motion) const {
+    return logSe3(motion.T_before_after.inverse() * T_before_after_);
+  }
+
+  PinholeCamera camera_ = vga();
+  Eigen::Isometry3d T_before_after_;
+  cv::Mat before_m_, after_m_;
+  SparseFlow flow_;
+};
+
+TEST_F(SparseMotionTest, IsExactForExactCorners) {
+  addCorners(80, 0, 0.0);
+  const SparseMotion motion = estimate();
+  ASSERT_TRUE(motion.found);
+  EXPECT_EQ(motion.inliers, 80);
+  EXPECT_LT(error(motion).head<3>().norm(), 1e-3);
+  EXPECT_LT(error(motion).tail<3>().norm(), 5e-4);
+}
+
+TEST_F(SparseMotionTest, LeavesOutWhatWalks) {
+  addCorners(80, 40, 0.2);
+  const SparseMotion motion = estimate();
+  ASSERT_TRUE(motion.found);
+  EXPECT_LE(motion.inliers, 85);
+  EXPECT_LT(error(motion).head<3>().norm(), 5e-3);
+  EXPECT_LT(error(motion).tail<3>().norm(), 2e-3);
+}
+
+TEST_F(SparseMotionTest, LeavesOutWhatStandsBeforeAStableSurfaceOfTheMap) {
+  addCorners(30, 60, 0.1);  // more of the corners walk than not
+  ModelView view;
+  view.camera = camera_;
+  view.depth_m = before_m_.clone();
+  view.stable = cv::Mat(before_m_.size(), CV_8UC1, cv::Scalar(1));
+  for (std::size_t i = 30; i < flow_.before.size();
+       ++i) {  // the map has the wall behind them farther
+    const cv::Rect around(cv::Point(flow_.before[i]) - cv::Point(1, 1), cv::Size(3, 3));
+    view.depth_m(around).setTo(4.0F);
+  }
+  const SparseMotion motion = estimate(&view);
+  ASSERT_TRUE(motion.found);
+  EXPECT_LE(motion.matches, 35);
+  EXPECT_LT(error(motion).head<3>().norm(), 5e-3);
+}
+
+TEST_F(SparseMotionTest, IsNotFoundWithFewCornersOrWithoutDepth) {
+  addCorners(8, 0, 0.0);
+  EXPECT_FALSE(estimate().found);
+  addCorners(60, 0, 0.0);
+  before_m_.setTo(0.0F);
+  EXPECT_FALSE(estimate().found);
+}
+
+TEST_F(SparseMotionTest, CovarianceCoversTheError) {
+  int covered = 0;
+  for (int run = 0; run < 20; ++run) {
+    flow_.before.clear();
+    flow_.after.clear();
+    addCorners(40 + run, 5, 0.3);
+    const SparseMotion motion = estimate();
+    ASSERT_TRUE(motion.found);
+    const Vector6d e = error(motion);
+    covered +=
+        e.dot(motion.covariance.ldlt().solve(e)) < 20.0 ? 1 : 0;  // 6 degrees of freedom, 99.7 %
+  }
+  EXPECT_GE(covered, 18);
+}
+
+}  // namespace
+}  // namespace pf
