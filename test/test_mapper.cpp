@@ -65,7 +65,7 @@ TEST_F(MapperTest, CovarianceIsPositiveAndSmallInARoom) {
   EXPECT_LT((C - C.transpose()).norm(), 1e-9);
   for (int i = 0; i < 6; ++i) {
     EXPECT_GT(C(i, i), 0);
-    EXPECT_LT(C(i, i), 1e-4);
+    EXPECT_LT(C(i, i), 4e-4) << "2 cm, 0.02 rad";
   }
 }
 
@@ -77,7 +77,7 @@ TEST_F(MapperTest, ABareWallIsNotTrusted) {
   Mapper mapper(config());
   mapper.process({wall, {}, {}});
   wall.stamp_ns += 33333333;
-  EXPECT_EQ(mapper.process({wall, {}, {}}).outcome, FrameOutcome::not_converged);
+  EXPECT_EQ(mapper.process({wall, {}, {}}).outcome, FrameOutcome::degenerate);
 }
 
 TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
@@ -92,11 +92,19 @@ TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
   }
   EXPECT_EQ(status.state, TrackingState::lost);
   EXPECT_EQ(mapper.map().size(), surfels) << "nothing was fused meanwhile";
-  const TrueFrame truth = room().frame(22);  // back near the last good pose
+  const TrueFrame truth = room().frame(20);  // back near the last good pose
   RgbdFrame frame = truth.frame;
-  frame.stamp_ns = room().stamp(40);
-  status = mapper.process({frame, {}, {}});
+  int proofs = 0;
+  for (; status.state != TrackingState::tracking && proofs < 15; ++proofs) {
+    frame.stamp_ns = room().stamp(40 + proofs);
+    status = mapper.process({frame, {}, {}});
+    if (status.state == TrackingState::tracking) break;
+    EXPECT_EQ(status.outcome, FrameOutcome::unproven) << status.detail;
+    EXPECT_FALSE(status.located);
+    EXPECT_EQ(mapper.map().size(), surfels) << "nothing is fused before it is proven";
+  }
   EXPECT_EQ(status.state, TrackingState::tracking);
+  EXPECT_GE(proofs, 5) << "one good frame is no proof";
   EXPECT_LT(errorM(status, truth), 0.006);
 }
 

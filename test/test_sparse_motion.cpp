@@ -130,7 +130,7 @@ TEST_F(SparseMotionTest, CovarianceCoversTheError) {
     flow_.after.clear();
     addCorners(40 + run, 5, 0.3);
     const SparseMotion motion = estimate();
-    ASSERT_TRUE(motion.found);
+    ASSERT_TRUE(motion.found) << motion.inliers << " of " << motion.matches;
     const Vector6d e = error(motion);
     covered +=
         e.dot(motion.covariance.ldlt().solve(e)) < 20.0 ? 1 : 0;  // 6 degrees of freedom, 99.7 %

@@ -95,11 +95,14 @@ double YamlMap::number(const std::string& key, double otherwise, double min, dou
 }
 
 int YamlMap::integer(const std::string& key, int otherwise, int min, int max) {
-  const double value = number(key, otherwise, min, max);
-  if (value != std::floor(value)) {
-    fail(key, "is " + shortText(get(key)) + ", expected a whole number");
+  const YAML::Node node = get(key);
+  double value = 0.0;
+  const bool is_number = !node || YAML::convert<double>::decode(node, value);
+  if (!is_number || (std::isfinite(value) && value != std::floor(value))) {
+    const std::string text = shortText(node);
+    fail(key, "is " + (is_number ? text : "'" + text + "'") + ", expected a whole number");
   }
-  return static_cast<int>(value);
+  return static_cast<int>(number(key, otherwise, min, max));
 }
 
 bool YamlMap::flag(const std::string& key, bool otherwise) {

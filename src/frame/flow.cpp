@@ -53,7 +53,8 @@ const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
   cv::cvtColor(small_, grey_, cv::COLOR_RGB2GRAY);
   newest_.clear();
   cv::buildOpticalFlowPyramid(grey_, newest_, kWindow, kPyramidLevels);
-  comparable_ = !last_.empty() && last_[0].size() == newest_[0].size();
+  comparable_ = !last_.empty() && frame_size_ == frame.color.size();
+  frame_size_ = frame.color.size();
   flow_.before.clear();
   flow_.after.clear();
   flow_.from_ns = newest_ns_;

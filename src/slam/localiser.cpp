@@ -121,6 +121,7 @@ PosePrior Localiser::predict(const SparseMotion& motion, double elapsed_s) const
     noise = diagonal(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
                      kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
   }
+  prior.is_measured = motion.found;
   prior.T_map_camera = previous_.T_map_camera * step;
   const Matrix6d A = adjoint(step.inverse());
   prior.covariance = A * previous_.covariance * A.transpose() + noise;
@@ -222,13 +223,14 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
        motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
        untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
        isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
-  previous_.T_map_camera = prior.T_map_camera;
-  previous_.covariance = prior.covariance;
   if (location.outcome == FrameOutcome::forced) {
-    previous_.T_map_camera = location.tracking.T_map_camera;
-    previous_.covariance = location.tracking.covariance;
     location.located = true;
+  } else {
+    location.tracking.T_map_camera = prior.T_map_camera;
+    location.tracking.covariance = prior.covariance;
   }
+  previous_.T_map_camera = location.tracking.T_map_camera;
+  previous_.covariance = location.tracking.covariance;
   if (location.located) {
     ++reckoned_in_a_row_;
     T_map_located_ = previous_.T_map_camera;

@@ -102,11 +102,13 @@ bool guess(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
   }
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
   cv::Vec3d turn, shift;
-  cv::Mat inliers;
-  if (!cv::solvePnPRansac(points, pixels, K, cv::noArray(), turn, shift, false, kRansacIterations,
-                          kRansacError_px, kRansacConfidence, inliers, cv::SOLVEPNP_P3P)) {
-    return false;
-  }
+  const auto ransac = [&](int method) {
+    return cv::solvePnPRansac(points, pixels, K, cv::noArray(), turn, shift, false,
+                              kRansacIterations, kRansacError_px, kRansacConfidence, cv::noArray(),
+                              method);
+  };
+  // P3P finds no solution for some sets of points, EPnP needs two more of each set.
+  if (!ransac(cv::SOLVEPNP_P3P) && !ransac(cv::SOLVEPNP_EPNP)) return false;
   T_after_before.linear() = expSo3({turn[0], turn[1], turn[2]});
   T_after_before.translation() = Eigen::Vector3d(shift[0], shift[1], shift[2]);
   return T_after_before.matrix().allFinite();
@@ -162,6 +164,20 @@ System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera
   return system;
 }
 
+/// Least squares from a first guess; false when it leads nowhere.
+bool refine(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
+            Eigen::Isometry3d& T, System& system) {
+  for (int i = 0; i < kMaxIterations; ++i) {
+    system = build(landmarks, camera, T);
+    const Vector6d step = system.H.ldlt().solve(-system.g);
+    if (!step.allFinite() || step.norm() > 1.0) return false;
+    T = expSe3(step) * T;
+    if (step.norm() < 1e-5) break;
+  }
+  return system.inliers >= kMinMatches &&
+         system.inliers >= kMinInlierShare * static_cast<double>(landmarks.size());
+}
+
 }  // namespace
 
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
@@ -175,19 +191,14 @@ SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
   motion.matches = static_cast<int>(landmarks.size());
   if (near < kMinNear || motion.matches < kMinMatches) return motion;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (!guess(landmarks, camera, T)) return motion;
   System system;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    system = build(landmarks, camera, T);
-    const Vector6d step = system.H.ldlt().solve(-system.g);
-    if (!step.allFinite() || step.norm() > 1.0) return motion;
-    T = expSe3(step) * T;
-    if (step.norm() < 1e-5) break;
+  // RANSAC's answer can be a mirrored one where the corners lie in a plane.
+  if (!guess(landmarks, camera, T) || !refine(landmarks, camera, T, system)) {
+    T = Eigen::Isometry3d::Identity();
+    if (!refine(landmarks, camera, T, system)) return motion;
   }
   motion.inliers = system.inliers;
-  motion.found =
-      system.inliers >= kMinMatches && system.inliers >= kMinInlierShare * motion.matches;
-  if (!motion.found) return motion;
+  motion.found = true;
   motion.rmse_px = std::sqrt(system.squared_px / system.inliers);
   motion.T_before_after = T.inverse();
   // How much worse than assumed the corners are: blurred, of a misplaced color camera.

@@ -27,11 +27,28 @@ constexpr double kPixelsPerMeasurement = 800.0;
 // differences. Directions with less information than its square times that of the best-known one
 // are fixed by noise alone.
 constexpr double kNormalNoise = 28.0;
+// Without a measured prior there is nothing better to decide: only what is plainly free counts as
+// free.
+constexpr double kBlindNormalNoise = 7.0;
 constexpr double kMaxNormalNoise_rad = 0.12;
 // A prior so far off (squared, in standard deviations) keeps a quarter of its weight: corners may
 // follow a person who was not masked.
 constexpr double kPriorScale2 = 16.0;
 constexpr double kMinLeverArm_m = 0.3;
+
+struct Prior {
+  Eigen::Isometry3d T_frame_view;
+  Matrix6d information;
+  bool is_firm;
+  double normal_noise;  ///< see kNormalNoise
+};
+
+/// Geman and McClure's weight of the prior.
+double robustWeight(const Vector6d& error, const Prior& prior) {
+  if (prior.is_firm) return 1.0;
+  const double root = 1.0 / (1.0 + error.dot(prior.information * error) / kPriorScale2);
+  return root * root;
+}
 
 /// The images' word on the pose, with noise taken out, and the prior's.
 struct PoseSystem {
@@ -41,14 +58,16 @@ struct PoseSystem {
 };
 
 /// Leaves of H only what is more than noise; see kNormalNoise. The prior decides the rest.
-PoseSystem combine(const NormalEquations& e, double share, const Matrix6d& prior_information,
-                   const Vector6d& prior_error) {
+PoseSystem combine(const NormalEquations& e, double share, const Prior& prior,
+                   const Eigen::Isometry3d& T_frame_view) {
+  const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
+  const Matrix6d information = robustWeight(error, prior) * prior.information;
   const Matrix6d H = e.hessian();
   // The scene's distance: a turn moves it by this times the angle.
   const double lever_m = std::max(kMinLeverArm_m, std::sqrt(H.bottomRightCorner<3, 3>().trace() /
                                                             H.topLeftCorner<3, 3>().trace()));
   const double normal_noise = std::min(
-      kMaxNormalNoise_rad, kNormalNoise * depthSigma(static_cast<float>(lever_m)) / lever_m);
+      kMaxNormalNoise_rad, prior.normal_noise * depthSigma(static_cast<float>(lever_m)) / lever_m);
   Vector6d scale = Vector6d::Ones();
   scale.tail<3>().setConstant(1.0 / lever_m);
   const Matrix6d S = scale.asDiagonal();
@@ -65,22 +84,9 @@ PoseSystem combine(const NormalEquations& e, double share, const Matrix6d& prior
   const Matrix6d keep = V * kept.asDiagonal() * V.transpose();
   const Matrix6d inverse_S = scale.cwiseInverse().asDiagonal();
   system.H = inverse_S * V * values.cwiseProduct(kept).asDiagonal() * V.transpose() * inverse_S;
-  system.H = share * system.H + prior_information;
-  system.g = share * inverse_S * keep * S * e.gradient() + prior_information * prior_error;
+  system.H = share * system.H + information;
+  system.g = share * inverse_S * keep * S * e.gradient() + information * error;
   return system;
-}
-
-struct Prior {
-  Eigen::Isometry3d T_frame_view;
-  Matrix6d information;
-  bool is_firm;
-};
-
-/// Geman and McClure's weight of the prior.
-double robustWeight(const Vector6d& error, const Prior& prior) {
-  if (prior.is_firm) return 1.0;
-  const double root = 1.0 / (1.0 + error.dot(prior.information * error) / kPriorScale2);
-  return root * root;
 }
 
 /// An alignment at work: the pose that fits best so far, and what was found there.
@@ -123,9 +129,7 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
   for (int i = 1; i < config.max_iterations; ++i) {
     a.solvable = a.equations.inliers >= 6;
     if (!a.solvable) return;
-    const Vector6d error = logSe3(a.T_frame_view * prior.T_frame_view.inverse());
-    const PoseSystem system =
-        combine(a.equations, share, robustWeight(error, prior) * prior.information, error);
+    const PoseSystem system = combine(a.equations, share, prior, a.T_frame_view);
     Vector6d step = system.H.ldlt().solve(-system.g);
     a.solvable = step.allFinite() && step.norm() < 1.0;
     if (!a.solvable) return;
@@ -167,9 +171,7 @@ TrackingResult resultOf(const Alignment& a, double share, const Prior& prior,
     result.photometric_rmse = std::sqrt(e.photometric_error / e.photometric_inliers);
   }
   if (!a.solvable) return result;
-  const Vector6d error = logSe3(a.T_frame_view * prior.T_frame_view.inverse());
-  const PoseSystem system =
-      combine(e, share, robustWeight(error, prior) * prior.information, error);
+  const PoseSystem system = combine(e, share, prior, a.T_frame_view);
   result.free_directions = system.free_directions;
   result.converged = a.last_step < kConvergedStep;
   result.covariance = system.H.ldlt().solve(Matrix6d::Identity());
@@ -187,7 +189,8 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   a.settings.brightness = start.brightness;
   a.T_frame_view = start.T_map_camera.inverse() * start.T_map_view;
   const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
-                    start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm};
+                    start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm,
+                    start.prior.is_measured ? kNormalNoise : kBlindNormalNoise};
   double share = 1.0;
   for (int i = kLevels - 1; i >= 0; --i) {
     // Coarse levels start further away: what is an outlier there may be an inlier later.

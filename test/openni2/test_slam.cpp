@@ -10,7 +10,7 @@
 
 namespace {
 
-using pf::TrackingStatus;
+using posefusion::TrackingStatus;
 
 /// Statuses of the chain, and the stamps of the colour images that the driver sent.
 class Slam : public ::testing::Test {

@@ -46,6 +46,7 @@ class FlowTracker {
   std::vector<cv::Point2f> corners_;    // of the newest frame, pixels of its pyramid
   SparseFlow flow_;
   float scale_ = 1.0F;  // pyramid pixels per frame pixel
+  cv::Size frame_size_;
   bool comparable_ = false;
   std::int64_t newest_ns_ = 0;
   cv::Mat small_, grey_;

@@ -16,7 +16,7 @@ struct TrackingConfig {
   double min_inlier_fraction = 0.4;
   double max_translation_m = 0.30;
   double max_rotation_rad = 0.60;
-  int lost_after_frames = 5;
+  int lost_after_frames = 10;
 };
 
 inline void visitFields(TrackingConfig& c, FieldVisitor& v) {

@@ -13,6 +13,7 @@ namespace pf {
 struct PosePrior {
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Identity();  ///< of the twist (m, rad) in the camera frame
+  bool is_measured = false;                    ///< from corners; else extrapolated
 };
 
 /// Where an alignment begins.
