@@ -164,8 +164,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
 }
 
 TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
-  const std::string file =
-      own.write("c.yaml", "frame: {max_depth_m: 3.5}\nblur: {threshold: 7}");
+  const std::string file = own.write("c.yaml", "frame: {max_depth_m: 3.5}\nblur: {threshold: 7}");
   ASSERT_EQ(run({"--print-config", "--config", file, "--set", "blur.threshold=9", "--detector",
                  "none", "--mode", "posefusion"}),
             0);
