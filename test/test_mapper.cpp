@@ -108,6 +108,30 @@ TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
   EXPECT_LT(errorM(status, truth), 0.006);
 }
 
+TEST_F(MapperTest, WhileLostAHalfGoodFrameIsNotFused) {
+  Mapper mapper(config());
+  for (int i = 0; i < 20; ++i) mapper.process({room().frame(i).frame, {}, {}});
+  FrameStatus status;
+  for (int i = 20; i < 32; ++i) {
+    const cv::Mat nothing = cv::Mat::zeros(240, 320, CV_16UC1);
+    status = mapper.process({withDepth(room().frame(i), nothing), {}, {}});
+  }
+  ASSERT_EQ(status.state, TrackingState::lost);
+  const std::size_t surfels = mapper.map().size();
+  RgbdFrame frame = room().frame(20).frame;
+  frame.depth = frame.depth.clone();
+  // Something stands before the right part: enough agrees to track on, not enough to come back.
+  cv::Mat covered = frame.depth.colRange(180, 320);
+  cv::subtract(covered, cv::Scalar(300), covered, covered > 600);
+  for (int k = 0; k < 12; ++k) {
+    frame.stamp_ns = room().stamp(40 + k);
+    status = mapper.process({frame, {}, {}});
+    EXPECT_EQ(status.state, TrackingState::lost);
+    EXPECT_NE(status.outcome, FrameOutcome::fused) << k;
+  }
+  EXPECT_EQ(mapper.map().size(), surfels);
+}
+
 TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {
   Mapper mapper(config());
   for (int i = 0; i < 10; ++i) mapper.process({room().frame(i).frame, {}, {}});

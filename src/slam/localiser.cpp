@@ -256,7 +256,8 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
     trust(location, stamp_ns, elapsed_s);
     return;
   }
-  if (looks_right) {
+  // Good enough to track on is not good enough to come back: only `trust` lets a frame be fused.
+  if (location.outcome == FrameOutcome::fused) {
     location.outcome = FrameOutcome::unproven;
     location.detail = std::to_string(proofs_) + " of " + std::to_string(kProofs) + " frames";
   }
