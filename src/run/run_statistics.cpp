@@ -20,8 +20,6 @@ double shareOf(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
-bool hasPose(const FrameStatus& status) { return status.located; }
-
 double FrameCounts::poseShare() const { return shareOf(posed, read); }
 double FrameCounts::sharpPoseShare() const { return shareOf(posed, read - blurred); }
 
