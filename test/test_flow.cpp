@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -11,16 +12,30 @@ namespace {
 
 /// Smooth noise, so that every place looks different, shifted by (dx, dy) pixels.
 RgbdFrame frameOf(double dx, double dy, std::int64_t stamp_ns, const cv::Size& size = {640, 480}) {
-  cv::Mat noise(600, 760, CV_8UC3);
+  cv::Mat noise(800, 1000, CV_8UC3);
   cv::RNG random(7);
   random.fill(noise, cv::RNG::UNIFORM, 0, 256);
   cv::GaussianBlur(noise, noise, {}, 4.0);
   cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
-  const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, dx - 40, 0, 1, dy - 40);
+  const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, dx - 200, 0, 1, dy - 150);
   RgbdFrame frame;
   frame.stamp_ns = stamp_ns;
   cv::warpAffine(noise, frame.color, shift, size);
   return frame;
+}
+
+/// Share of the corners that moved by `shift` to so many pixels; without those near the border,
+/// whose surroundings are cut off.
+double shareAt(const SparseFlow& flow, const cv::Point2f& shift, double tolerance_px) {
+  const cv::Rect2f inside(32, 32, 576, 416);
+  int all = 0, close = 0;
+  for (std::size_t i = 0; i < flow.before.size(); ++i) {
+    if (!inside.contains(flow.before[i]) || !inside.contains(flow.after[i])) continue;
+    const cv::Point2f error = flow.after[i] - flow.before[i] - shift;
+    ++all;
+    close += std::hypot(error.x, error.y) < tolerance_px ? 1 : 0;
+  }
+  return static_cast<double>(close) / all;
 }
 
 TEST(Flow, FollowsAShiftToATenthOfAPixel) {
@@ -31,12 +46,7 @@ TEST(Flow, FollowsAShiftToATenthOfAPixel) {
   EXPECT_EQ(flow.to_ns, 2);
   ASSERT_GT(flow.before.size(), 100U);
   ASSERT_EQ(flow.before.size(), flow.after.size());
-  std::size_t close = 0;  // corners cut by the border have no window of their own
-  for (std::size_t i = 0; i < flow.before.size(); ++i) {
-    const cv::Point2f error = flow.after[i] - flow.before[i] - cv::Point2f(7.5F, -4.25F);
-    close += std::hypot(error.x, error.y) < 0.15 ? 1 : 0;
-  }
-  EXPECT_GE(close, flow.before.size() * 95 / 100);
+  EXPECT_GE(shareAt(flow, {7.5F, -4.25F}, 0.15), 0.95);
   const FollowedPoints points = tracker.follow({{200, 150}, {430, 333}});
   ASSERT_EQ(points.found[0], 1);
   EXPECT_NEAR(points.after[1].x, 437.5, 0.3);
@@ -57,6 +67,43 @@ TEST(Flow, CornersOfOnePosterDoNotKeepTheOtherCellsEmpty) {
   int outside = 0;
   for (const cv::Point2f& p : flow.before) outside += poster.contains(cv::Point(p)) ? 0 : 1;
   EXPECT_GT(outside, 30);
+}
+
+TEST(Flow, CornersKeepTheirNumberWhileTheyAreFollowed) {
+  FlowTracker tracker;
+  tracker.advance(frameOf(0, 0, 1));
+  const SparseFlow first = tracker.advance(frameOf(3, 1, 2));
+  const SparseFlow second = tracker.advance(frameOf(6, 2, 3));
+  ASSERT_EQ(second.ids.size(), second.after.size());
+  EXPECT_TRUE(std::is_sorted(second.ids.begin(), second.ids.end()));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < first.ids.size(); ++i) {
+    const auto at = std::find(second.ids.begin(), second.ids.end(), first.ids[i]);
+    if (at == second.ids.end()) continue;
+    ++kept;
+    const cv::Point2f gap = second.before[at - second.ids.begin()] - first.after[i];
+    EXPECT_LT(std::hypot(gap.x, gap.y), 1e-3);
+  }
+  EXPECT_GT(kept, first.ids.size() * 8 / 10);
+}
+
+TEST(Flow, AChangeOfExposureIsNoMotion) {
+  FlowTracker tracker;
+  RgbdFrame frame = frameOf(0, 0, 1);
+  tracker.advance(frame);
+  RgbdFrame darker = frameOf(4, 0, 2);
+  darker.color.convertTo(darker.color, CV_8UC3, 0.9, 25);
+  const SparseFlow& flow = tracker.advance(darker);
+  ASSERT_GT(flow.before.size(), 150U);
+  EXPECT_GE(shareAt(flow, {4.0F, 0.0F}, 0.25), 0.9);
+}
+
+TEST(Flow, ReachesAsFarAsAFastTurnBetweenDroppedFrames) {
+  FlowTracker tracker;
+  tracker.advance(frameOf(0, 0, 1));
+  const SparseFlow& flow = tracker.advance(frameOf(190, -20, 2));
+  ASSERT_GT(flow.before.size(), 60U);
+  EXPECT_GE(shareAt(flow, {190.0F, -20.0F}, 0.5), 0.9);
 }
 
 TEST(Flow, NothingIsFollowedOverAChangeOfSizeOrAReset) {

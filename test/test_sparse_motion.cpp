@@ -63,6 +63,7 @@ class SparseMotionTest : public ::testing::Test {
       const double walk = i < count ? 0.0 : 6.0;
       flow_.before.emplace_back(u, v);
       flow_.after.emplace_back(seen.x() + walk + noise(random), seen.y() + noise(random));
+      flow_.ids.push_back(static_cast<std::uint32_t>(i));
     }
   }
 
@@ -126,8 +127,7 @@ TEST_F(SparseMotionTest, IsNotFoundWithFewCornersOrWithoutDepth) {
 TEST_F(SparseMotionTest, CovarianceCoversTheError) {
   int covered = 0;
   for (int run = 0; run < 20; ++run) {
-    flow_.before.clear();
-    flow_.after.clear();
+    flow_ = SparseFlow();
     addCorners(40 + run, 5, 0.3);
     const SparseMotion motion = estimate();
     ASSERT_TRUE(motion.found) << motion.inliers << " of " << motion.matches;

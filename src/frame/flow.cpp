@@ -21,6 +21,9 @@ constexpr double kCellQuality = 0.1;  // part of the cell's best corner's streng
 constexpr double kCornerSpacing_px = 7.0;
 constexpr float kMaxReturnError_px = 0.7F;  // forth and back
 const cv::Size kWindow(13, 13);
+constexpr int kFlattened_px = 31;        // brightness counts against its mean over such a square
+constexpr std::size_t kFewFollowed = 3;  // one in so many: the search begins anew elsewhere
+constexpr double kCoarse = 0.25;         // of the pyramid's width, to see how the whole image moved
 
 /// The centre of pixel 0 of an image shrunk by `scale` lies at (1 / scale - 1) / 2 of the large
 /// one.
@@ -34,12 +37,12 @@ cv::Point2f toImage(const cv::Point2f& p, float scale) {
 
 cv::TermCriteria stop() { return {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 12, 0.02}; }
 
-/// Follows points (pyramid pixels) between two pyramids.
+/// Follows points (pyramid pixels) between two pyramids, from first guesses in `after`.
 void follow(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
             const std::vector<cv::Point2f>& before, std::vector<cv::Point2f>& after,
             std::vector<std::uint8_t>& found) {
   cv::calcOpticalFlowPyrLK(from, to, before, after, found, cv::noArray(), kWindow, kPyramidLevels,
-                           stop());
+                           stop(), cv::OPTFLOW_USE_INITIAL_FLOW);
 }
 
 }  // namespace
@@ -51,28 +54,85 @@ const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
   const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * scale_)));
   cv::resize(frame.color, small_, {width, height}, 0, 0, cv::INTER_AREA);
   cv::cvtColor(small_, grey_, cv::COLOR_RGB2GRAY);
+  flatten();
   newest_.clear();
   cv::buildOpticalFlowPyramid(grey_, newest_, kWindow, kPyramidLevels);
   comparable_ = !last_.empty() && frame_size_ == frame.color.size();
   frame_size_ = frame.color.size();
   flow_.before.clear();
   flow_.after.clear();
+  flow_.ids.clear();
   flow_.from_ns = newest_ns_;
   flow_.to_ns = newest_ns_ = frame.stamp_ns;
-  if (comparable_ && !corners_.empty()) {
-    std::vector<cv::Point2f> there, back;
-    std::vector<std::uint8_t> found, returned;
-    pf::follow(last_, newest_, corners_, there, found);
-    pf::follow(newest_, last_, there, back, returned);
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      const cv::Point2f error = back[i] - corners_[i];
-      if (!found[i] || !returned[i] || std::hypot(error.x, error.y) > kMaxReturnError_px) continue;
-      flow_.before.push_back(toImage(corners_[i], scale_));
-      flow_.after.push_back(toImage(there[i], scale_));
-    }
-  }
+  if (comparable_ && !corners_.empty()) followCorners();
+  keep(flow_.after);
   findCorners();
   return flow_;
+}
+
+/// Takes slow changes of brightness out: a camera that changes its exposure is no motion.
+void FlowTracker::flatten() {
+  cv::boxFilter(grey_, mean_, CV_16S, {kFlattened_px, kFlattened_px});
+  cv::subtract(grey_, mean_, mean_, cv::noArray(), CV_16S);
+  mean_.convertTo(grey_, CV_8U, 1.0, 128.0);
+}
+
+/// Follows the corners into the newest frame; one counts only if it comes back the other way.
+void FlowTracker::followCorners() {
+  const auto attempt = [&](const cv::Point2f& shift) {
+    there_ = corners_;
+    for (cv::Point2f& p : there_) p += shift;
+    pf::follow(last_, newest_, corners_, there_, found_);
+    back_ = corners_;
+    pf::follow(newest_, last_, there_, back_, returned_);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const cv::Point2f error = back_[i] - corners_[i];
+      found_[i] = found_[i] && returned_[i] && std::hypot(error.x, error.y) <= kMaxReturnError_px;
+      count += found_[i];
+    }
+    return count;
+  };
+  // A fast turn, or frames that were dropped: further than flow reaches by itself.
+  if (attempt({}) < corners_.size() / kFewFollowed) attempt(wholeShift());
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    if (found_[i] == 0) continue;
+    flow_.before.push_back(toImage(corners_[i], scale_));
+    flow_.after.push_back(toImage(there_[i], scale_));
+    flow_.ids.push_back(ids_[i]);
+  }
+}
+
+/// By how much the image as a whole moved (pyramid pixels), from phase correlation (Kuglin and
+/// Hines 1975) of its coarse level.
+cv::Point2f FlowTracker::wholeShift() {
+  const auto coarse = [&](const std::vector<cv::Mat>& pyramid, cv::Mat& out) {
+    cv::resize(pyramid[0], small_, {}, kCoarse, kCoarse, cv::INTER_AREA);
+    small_.convertTo(out, CV_32F);
+  };
+  coarse(last_, coarse_before_);
+  coarse(newest_, coarse_after_);
+  cv::createHanningWindow(hanning_, coarse_before_.size(), CV_32F);
+  const cv::Point2d shift = cv::phaseCorrelate(coarse_before_, coarse_after_, hanning_);
+  return {static_cast<float>(shift.x / kCoarse), static_cast<float>(shift.y / kCoarse)};
+}
+
+/// Goes on with the corners just followed, one in a place; new ones are found around them.
+void FlowTracker::keep(const std::vector<cv::Point2f>& followed) {
+  corners_.clear();
+  ids_.clear();
+  free_.create(grey_.size(), CV_8UC1);
+  free_.setTo(255);
+  for (std::size_t i = 0; i < followed.size(); ++i) {
+    const cv::Point2f p = toPyramid(followed[i], scale_);
+    const cv::Point at(cvRound(p.x), cvRound(p.y));
+    if (!cv::Rect(0, 0, grey_.cols, grey_.rows).contains(at) || free_.at<std::uint8_t>(at) == 0) {
+      continue;
+    }
+    cv::circle(free_, at, static_cast<int>(kCornerSpacing_px), 0, cv::FILLED);
+    corners_.push_back(p);
+    ids_.push_back(flow_.ids[i]);
+  }
 }
 
 FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const {
@@ -80,13 +140,19 @@ FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const
   if (!comparable_ || before.empty()) return points;
   std::vector<cv::Point2f> scaled(before);
   for (cv::Point2f& p : scaled) p = toPyramid(p, scale_);
+  points.after = scaled;
   pf::follow(last_, newest_, scaled, points.after, points.found);
   for (cv::Point2f& p : points.after) p = toImage(p, scale_);
   return points;
 }
 
 void FlowTracker::findCorners() {
-  cv::goodFeaturesToTrack(grey_, corners_, kMaxCorners, kCornerQuality, kCornerSpacing_px);
+  std::vector<cv::Point2f> found;
+  const int wanted = kMaxCorners - static_cast<int>(corners_.size());
+  if (wanted > 0) {
+    cv::goodFeaturesToTrack(grey_, found, wanted, kCornerQuality, kCornerSpacing_px, free_);
+  }
+  corners_.insert(corners_.end(), found.begin(), found.end());
   const cv::Size cell((grey_.cols + kCellColumns - 1) / kCellColumns,
                       (grey_.rows + kCellRows - 1) / kCellRows);
   std::vector<std::uint8_t> taken(kCellColumns * kCellRows, 0);
@@ -94,7 +160,6 @@ void FlowTracker::findCorners() {
     const int row = static_cast<int>(p.y) / cell.height, col = static_cast<int>(p.x) / cell.width;
     taken[row * kCellColumns + col] = 1;
   }
-  std::vector<cv::Point2f> found;
   for (int i = 0; i < kCellColumns * kCellRows; ++i) {
     const cv::Point from(i % kCellColumns * cell.width, i / kCellColumns * cell.height);
     const cv::Rect area = cv::Rect(from, cell) & cv::Rect(0, 0, grey_.cols, grey_.rows);
@@ -102,6 +167,7 @@ void FlowTracker::findCorners() {
     cv::goodFeaturesToTrack(grey_(area), found, kCornersPerCell, kCellQuality, kCornerSpacing_px);
     for (const cv::Point2f& p : found) corners_.emplace_back(p.x + from.x, p.y + from.y);
   }
+  while (ids_.size() < corners_.size()) ids_.push_back(next_id_++);
 }
 
 void FlowTracker::reset() { *this = FlowTracker(); }

@@ -54,6 +54,7 @@ SparseFlowMsg::Ptr toMessage(const pf::SparseFlow& flow, const std_msgs::Header&
     message->before.insert(message->before.end(), {p.x, p.y});
   }
   for (const cv::Point2f& p : flow.after) message->after.insert(message->after.end(), {p.x, p.y});
+  message->ids = flow.ids;
   return message;
 }
 
@@ -62,7 +63,12 @@ pf::SparseFlow fromMessage(const SparseFlowMsg& message) {
     throw InputError("flow: " + std::to_string(message.before.size()) + " numbers before and " +
                      std::to_string(message.after.size()) + " after, expected equally many pairs");
   }
+  if (2 * message.ids.size() != message.before.size()) {
+    throw InputError("flow: " + std::to_string(message.ids.size()) + " ids for " +
+                     std::to_string(message.before.size() / 2) + " corners");
+  }
   pf::SparseFlow flow;
+  flow.ids = message.ids;
   flow.from_ns = toNs(message.from);
   flow.to_ns = toNs(message.header.stamp);
   for (std::size_t i = 0; i < message.before.size(); i += 2) {

@@ -78,7 +78,7 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
   location.T_map_camera = location.tracking.T_map_camera = T_map_camera;
   location.tracking.converged = true;
   trust(location, stamp_ns, 0.0);
-  remember(frame, stamp_ns);
+  remember(frame, {}, {T_map_camera}, location, stamp_ns);
   return location;
 }
 
@@ -87,10 +87,12 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   Location location;
   const bool fused_before = trusted_ns_ == previous_.stamp_ns;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
-  if (flow.from_ns == previous_.stamp_ns && flow.to_ns == stamp_ns &&
-      previous_.depth_m.size() == frame.full_depth_m.size()) {
+  if (flow.to_ns == stamp_ns) {
+    const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
     location.motion = estimateMotion(
-        flow, {previous_.depth_m, frame.full_depth_m, fused_before ? &view : nullptr},
+        flow,
+        {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
+         follows && fused_before ? &view : nullptr, &landmarks_, previous_.T_map_camera},
         frame.full_camera);
   }
   const PosePrior prior = predict(location.motion, elapsed_s);
@@ -108,7 +110,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   } else {
     distrust(location, prior, stamp_ns);
   }
-  remember(frame, stamp_ns);
+  remember(frame, flow, prior, location, stamp_ns);
   return location;
 }
 
@@ -183,10 +185,15 @@ Localiser::Verdict Localiser::judge(const WorkingFrame& frame, const TrackingRes
   if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
   const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
   if (isWithin(difference, kAgreeing_m, kAgreeing_rad)) return {};
+  const std::string text = stepText(difference, "from the prediction");
+  // Anything may have happened where nothing was measured: the images alone have to prove it.
+  if (!motion.found &&
+      !isStrong(r, frame.valid_pixels, kProvenInliers, kProvenOverlap, kProvenSeenThrough)) {
+    return {FrameOutcome::jumped, text};
+  }
   const Vector6d error = logSe3(difference);
   const Matrix6d covariance = prior.covariance + r.covariance;
   if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
-  const std::string text = stepText(difference, "from the prediction");
   if (!motion.found) return {FrameOutcome::jumped, text};
   const bool overruled =
       isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
@@ -268,7 +275,13 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   location.T_map_camera = T_map_located_;
 }
 
-void Localiser::remember(const WorkingFrame& frame, std::int64_t stamp_ns) {
+void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
+                         const Location& location, std::int64_t stamp_ns) {
+  const Eigen::Isometry3d step = previous_.T_map_camera * prior.T_map_camera.inverse();
+  // Overruled, or found elsewhere: the landmarks come along.
+  if (!isWithin(step, kAgreeing_m, kAgreeing_rad)) landmarks_.move(step);
+  landmarks_.update(flow, frame.full_depth_m, frame.full_camera, previous_.T_map_camera,
+                    location.outcome == FrameOutcome::fused);
   const FrameLevel& coarse = frame.levels[kLevels - 1];
   previous_.stamp_ns = stamp_ns;
   frame.full_depth_m.copyTo(previous_.depth_m);

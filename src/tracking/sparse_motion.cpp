@@ -13,9 +13,7 @@ namespace {
 
 constexpr int kMinMatches = 12;
 constexpr int kMinNear = 6;  // with depth
-constexpr double kMinInlierShare = 0.5;
-constexpr int kReach_px = 2;   // depth is the mean of 5x5 pixels ...
-constexpr int kMinDepths = 3;  // ... of which so many must be there
+constexpr double kMinInlierShare = 0.35;
 constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
 constexpr float kRansacError_px = 2.5F;
@@ -26,44 +24,22 @@ constexpr double kCornerSigma_px = 0.3;  // of a corner's place, at full size
 constexpr double kFar_m = 7.0;
 constexpr double kFarSigma_px = 2.0;
 constexpr int kEnoughNear = 30;
+// Landmarks that were placed by poses gone astray agree less than this: the step from the frame
+// before may then be the better answer.
+constexpr double kHeldShare = 0.5;
 constexpr double kCauchyScale = 1.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
 constexpr double kSharedTranslation_m = 0.003;
 constexpr double kSharedRotation_rad = 0.0012;
 
-/// A corner of the earlier frame in space, and where the later frame sees it.
-struct Landmark {
-  Eigen::Vector3d before;
+/// Where a corner is in space, and where the later frame sees it.
+struct Sight {
+  Eigen::Vector3d before;  ///< m, in the earlier camera's frame
   Eigen::Vector2d after_px;
   double after_m = 0;   ///< depth in the later frame, 0 = not known
   bool is_far = false;  ///< without depth: taken to lie beyond the sensor's range
 };
-
-/// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
-/// allowed: dark and bright things return little.
-double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel) {
-  const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
-  const int first_u = std::max(0, u - kReach_px),
-            last_u = std::min(depth_m.cols - 1, u + kReach_px);
-  const int first_v = std::max(0, v - kReach_px),
-            last_v = std::min(depth_m.rows - 1, v + kReach_px);
-  float least = 1e9F, most = 0.0F, sum = 0.0F;
-  int count = 0;
-  for (int row = first_v; row <= last_v; ++row) {
-    const float* depth = depth_m.ptr<float>(row);
-    for (int col = first_u; col <= last_u; ++col) {
-      const float z = depth[col];
-      if (z <= 0.0F) continue;
-      least = std::min(least, z);
-      most = std::max(most, z);
-      sum += 1.0F / z;
-      ++count;
-    }
-  }
-  if (count < kMinDepths || most - least > surfaceTolerance(least, 4.0F)) return 0.0;
-  return static_cast<double>(static_cast<float>(count) / sum);
-}
 
 /// Does something stand at depth z (m) well before a stable surface of the map?
 bool isBeforeMap(const ModelView& view, const PinholeCamera& camera, const cv::Point2f& pixel,
@@ -76,27 +52,33 @@ bool isBeforeMap(const ModelView& view, const PinholeCamera& camera, const cv::P
   return stable && known - static_cast<float>(z) > 2.0F * surfaceTolerance(known, 5.0F);
 }
 
-std::vector<Landmark> landmarksOf(const SparseFlow& flow, const FlowScene& scene,
-                                  const PinholeCamera& camera) {
-  std::vector<Landmark> landmarks;
+/// `landmarks` may be null: then all places come from the earlier frame's depth.
+std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
+                            const Landmarks* landmarks, const PinholeCamera& camera) {
+  std::vector<Sight> sights;
+  const Eigen::Isometry3d T_before_map = scene.T_map_before.inverse();
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
     const cv::Point2f &a = flow.before[i], &b = flow.after[i];
-    const double z = smoothDepthAt(scene.before_m, a);
+    const Landmark* known = landmarks == nullptr ? nullptr : landmarks->find(flow.ids[i]);
+    if (known != nullptr && !known->isBelieved()) continue;
+    if (known == nullptr && scene.before_m.empty()) continue;
+    const double z = scene.before_m.empty() ? 0.0 : smoothDepthAt(scene.before_m, a);
     if (z > 0 && scene.view != nullptr && isBeforeMap(*scene.view, camera, a, z)) continue;
-    Landmark landmark{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
-    landmark.is_far = z <= 0;
-    if (!landmark.is_far) landmark.after_m = smoothDepthAt(scene.after_m, b);
-    landmarks.push_back(landmark);
+    Sight sight{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
+    if (known != nullptr) sight.before = T_before_map * known->at;
+    sight.is_far = known == nullptr && z <= 0;
+    if (!sight.is_far) sight.after_m = smoothDepthAt(scene.after_m, b);
+    sights.push_back(sight);
   }
-  return landmarks;
+  return sights;
 }
 
 /// The later camera from the earlier one by P3P and RANSAC; false when nothing fits.
-bool guess(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
+bool guess(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
            Eigen::Isometry3d& T_after_before) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
-  for (const Landmark& l : landmarks) {
+  for (const Sight& l : landmarks) {
     points.emplace_back(l.before.x(), l.before.y(), l.before.z());
     pixels.emplace_back(l.after_px.x(), l.after_px.y());
   }
@@ -131,10 +113,10 @@ void add(const Eigen::Matrix<double, 1, 6>& J, double r, double weight, System& 
 }
 
 /// For the twist of T_after_before (update exp(twist) * T).
-System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
+System build(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
              const Eigen::Isometry3d& T) {
   System system;
-  for (const Landmark& l : landmarks) {
+  for (const Sight& l : landmarks) {
     const Eigen::Vector3d q = T * l.before;
     if (q.z() < 0.1) continue;
     const double iz = 1.0 / q.z();
@@ -165,8 +147,8 @@ System build(const std::vector<Landmark>& landmarks, const PinholeCamera& camera
 }
 
 /// Least squares from a first guess; false when it leads nowhere.
-bool refine(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
-            Eigen::Isometry3d& T, System& system) {
+bool refine(const std::vector<Sight>& landmarks, const PinholeCamera& camera, Eigen::Isometry3d& T,
+            System& system) {
   for (int i = 0; i < kMaxIterations; ++i) {
     system = build(landmarks, camera, T);
     const Vector6d step = system.H.ldlt().solve(-system.g);
@@ -178,24 +160,20 @@ bool refine(const std::vector<Landmark>& landmarks, const PinholeCamera& camera,
          system.inliers >= kMinInlierShare * static_cast<double>(landmarks.size());
 }
 
-}  // namespace
-
-SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
-                            const PinholeCamera& camera) {
+SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera) {
   SparseMotion motion;
-  std::vector<Landmark> landmarks = landmarksOf(flow, scene, camera);
-  const auto far = std::stable_partition(landmarks.begin(), landmarks.end(),
-                                         [](const Landmark& l) { return !l.is_far; });
-  const auto near = far - landmarks.begin();
-  if (near >= kEnoughNear) landmarks.erase(far, landmarks.end());
-  motion.matches = static_cast<int>(landmarks.size());
+  const auto far =
+      std::stable_partition(sights.begin(), sights.end(), [](const Sight& l) { return !l.is_far; });
+  const auto near = far - sights.begin();
+  if (near >= kEnoughNear) sights.erase(far, sights.end());
+  motion.matches = static_cast<int>(sights.size());
   if (near < kMinNear || motion.matches < kMinMatches) return motion;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   System system;
   // RANSAC's answer can be a mirrored one where the corners lie in a plane.
-  if (!guess(landmarks, camera, T) || !refine(landmarks, camera, T, system)) {
+  if (!guess(sights, camera, T) || !refine(sights, camera, T, system)) {
     T = Eigen::Isometry3d::Identity();
-    if (!refine(landmarks, camera, T, system)) return motion;
+    if (!refine(sights, camera, T, system)) return motion;
   }
   motion.inliers = system.inliers;
   motion.found = true;
@@ -207,6 +185,20 @@ SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
   motion.covariance.diagonal().head<3>().array() += kSharedTranslation_m * kSharedTranslation_m;
   motion.covariance.diagonal().tail<3>().array() += kSharedRotation_rad * kSharedRotation_rad;
   return motion;
+}
+
+}  // namespace
+
+SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
+                            const PinholeCamera& camera) {
+  const SparseMotion held = estimate(sightsOf(flow, scene, scene.landmarks, camera), camera);
+  if (scene.landmarks == nullptr || (held.found && held.inliers >= kHeldShare * held.matches)) {
+    return held;
+  }
+  const SparseMotion alone = estimate(sightsOf(flow, scene, nullptr, camera), camera);
+  const bool held_is_better =
+      held.found && alone.inliers * held.matches <= held.inliers * alone.matches;
+  return held_is_better ? held : alone;
 }
 
 }  // namespace pf

@@ -31,9 +31,9 @@ constexpr double kNormalNoise = 28.0;
 // free.
 constexpr double kBlindNormalNoise = 7.0;
 constexpr double kMaxNormalNoise_rad = 0.12;
-// A prior so far off (squared, in standard deviations) keeps a quarter of its weight: corners may
-// follow a person who was not masked.
-constexpr double kPriorScale2 = 16.0;
+// A prior that the images contradict by so much (squared, in standard deviations of both) keeps a
+// quarter of its weight: corners may follow a person who was not masked.
+constexpr double kPriorScale2 = 100.0;
 constexpr double kMinLeverArm_m = 0.3;
 
 struct Prior {
@@ -43,49 +43,72 @@ struct Prior {
   double normal_noise;  ///< see kNormalNoise
 };
 
-/// Geman and McClure's weight of the prior.
-double robustWeight(const Vector6d& error, const Prior& prior) {
-  if (prior.is_firm) return 1.0;
-  const double root = 1.0 / (1.0 + error.dot(prior.information * error) / kPriorScale2);
-  return root * root;
-}
-
-/// The images' word on the pose, with noise taken out, and the prior's.
-struct PoseSystem {
-  Matrix6d H;
+/// What the images say of the pose, with noise taken out.
+struct ImageSystem {
+  Matrix6d H, inverse;  ///< the inverse is zero in free directions
   Vector6d g;
   int free_directions = 0;
 };
 
-/// Leaves of H only what is more than noise; see kNormalNoise. The prior decides the rest.
-PoseSystem combine(const NormalEquations& e, double share, const Prior& prior,
-                   const Eigen::Isometry3d& T_frame_view) {
-  const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
-  const Matrix6d information = robustWeight(error, prior) * prior.information;
+/// Leaves of the images' equations only what is more than noise; see kNormalNoise.
+ImageSystem withoutNoise(const NormalEquations& e, double share, double noise) {
   const Matrix6d H = e.hessian();
   // The scene's distance: a turn moves it by this times the angle.
   const double lever_m = std::max(kMinLeverArm_m, std::sqrt(H.bottomRightCorner<3, 3>().trace() /
                                                             H.topLeftCorner<3, 3>().trace()));
-  const double normal_noise = std::min(
-      kMaxNormalNoise_rad, prior.normal_noise * depthSigma(static_cast<float>(lever_m)) / lever_m);
+  const double normal_noise =
+      std::min(kMaxNormalNoise_rad, noise * depthSigma(static_cast<float>(lever_m)) / lever_m);
   Vector6d scale = Vector6d::Ones();
   scale.tail<3>().setConstant(1.0 / lever_m);
   const Matrix6d S = scale.asDiagonal();
+  const Matrix6d inverse_S = scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(S * H * S);
   const Vector6d& values = eigen.eigenvalues();
+  const Matrix6d& V = eigen.eigenvectors();
   const double floor = normal_noise * normal_noise * values[5];
-  Vector6d kept;
-  PoseSystem system;
+  Vector6d kept, inverse = Vector6d::Zero();
+  ImageSystem system;
   for (int i = 0; i < 6; ++i) {
     kept[i] = values[i] > floor ? (values[i] - floor) / values[i] : 0.0;
+    if (kept[i] > 0) inverse[i] = 1.0 / (share * (values[i] - floor));
     system.free_directions += kept[i] == 0.0 ? 1 : 0;
   }
-  const Matrix6d& V = eigen.eigenvectors();
   const Matrix6d keep = V * kept.asDiagonal() * V.transpose();
-  const Matrix6d inverse_S = scale.cwiseInverse().asDiagonal();
-  system.H = inverse_S * V * values.cwiseProduct(kept).asDiagonal() * V.transpose() * inverse_S;
-  system.H = share * system.H + information;
-  system.g = share * inverse_S * keep * S * e.gradient() + information * error;
+  system.H =
+      share * inverse_S * V * values.cwiseProduct(kept).asDiagonal() * V.transpose() * inverse_S;
+  system.inverse = S * V * inverse.asDiagonal() * V.transpose() * S;
+  system.g = share * inverse_S * keep * S * e.gradient();
+  return system;
+}
+
+/// Geman and McClure's weight of the prior, by how far the images' own answer lies from it (in
+/// standard deviations of both: where the images say little, it may lie anywhere).
+double weightOf(const Prior& prior, const ImageSystem& images, const Vector6d& error) {
+  if (prior.is_firm) return 1.0;
+  const Vector6d v = images.H * error - images.g;  // H times the answer, seen from the prior's
+  const double distance2 =
+      v.dot(images.inverse * v) - v.dot((images.H + prior.information).ldlt().solve(v));
+  const double root = 1.0 / (1.0 + std::max(0.0, distance2) / kPriorScale2);
+  return root * root;
+}
+
+/// The images' word on the pose and the prior's.
+struct PoseSystem {
+  Matrix6d H;
+  Vector6d g;
+  double prior_weight = 1.0;
+  int free_directions = 0;
+};
+
+PoseSystem combine(const NormalEquations& e, double share, const Prior& prior,
+                   const Eigen::Isometry3d& T_frame_view) {
+  const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
+  const ImageSystem images = withoutNoise(e, share, prior.normal_noise);
+  PoseSystem system;
+  system.free_directions = images.free_directions;
+  system.prior_weight = weightOf(prior, images, error);
+  system.H = images.H + system.prior_weight * prior.information;
+  system.g = images.g + system.prior_weight * prior.information * error;
   return system;
 }
 
@@ -109,14 +132,14 @@ void adaptPhotometry(const NormalEquations& e, const TrackingConfig& config,
       std::max(config.photometric_sigma, std::sqrt(e.photometric_error / e.photometric_inliers)));
 }
 
-/// What the steps minimise, images and prior, per model point: both are Geman and McClure's.
+/// What a step is to lower, per model point: the images' cost (Geman and McClure's) and the
+/// prior's.
 double objective(const NormalEquations& e, const Eigen::Isometry3d& T_frame_view, double share,
-                 const Prior& prior, const TermSettings& settings) {
+                 const Prior& prior, double prior_weight, const TermSettings& settings) {
   const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
-  const double d2 = error.dot(prior.information * error) / kPriorScale2;
-  const double bounded = prior.is_firm ? d2 : d2 / (1.0 + d2);
+  const double d2 = prior_weight * error.dot(prior.information * error);
   const double scale2 = settings.robust_scale * settings.robust_scale;
-  return e.cost + kPriorScale2 * bounded / (share * scale2 * std::max(1.0, e.cost_weight));
+  return e.cost + d2 / (share * scale2 * std::max(1.0, e.cost_weight));
 }
 
 void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share, const Prior& prior,
@@ -134,18 +157,20 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
     a.solvable = step.allFinite() && step.norm() < 1.0;
     if (!a.solvable) return;
     const double most =
-        objective(a.equations, a.T_frame_view, share, prior, a.settings) + kCostNoise;
+        objective(a.equations, a.T_frame_view, share, prior, system.prior_weight, a.settings) +
+        kCostNoise;
     // Brightness and the scale of its residuals settle first: only then do costs compare.
     const bool settled = i > 2;
     if (!settled) adaptPhotometry(a.equations, config, a.settings);
     Eigen::Isometry3d T = expSe3(step) * a.T_frame_view;
     NormalEquations next = evaluate(T);
-    bool lower = !settled || objective(next, T, share, prior, a.settings) <= most;
+    bool lower =
+        !settled || objective(next, T, share, prior, system.prior_weight, a.settings) <= most;
     for (int k = 0; !lower && k < kMaxHalvings; ++k) {
       step *= 0.5;
       T = expSe3(step) * a.T_frame_view;
       next = evaluate(T);
-      lower = objective(next, T, share, prior, a.settings) <= most;
+      lower = objective(next, T, share, prior, system.prior_weight, a.settings) <= most;
     }
     a.last_step = step.norm();
     if (!lower) return;

@@ -48,12 +48,18 @@ TEST(StageMessages, FlowGoesThereAndBack) {
   flow.to_ns = flow.from_ns + 33333333;
   flow.before = {{0.25F, 1e-3F}, {639.5F, 479.125F}};
   flow.after = {{0.5F, 2.0F}, {630.0F, 470.0F}};
+  flow.ids = {3, 4000000000};
   const auto message = toMessage(flow, headerAt(flow.to_ns));
   const pf::SparseFlow back = fromMessage(*message);
   EXPECT_EQ(back.from_ns, flow.from_ns);
   EXPECT_EQ(back.to_ns, flow.to_ns);
   EXPECT_EQ(back.before, flow.before);
   EXPECT_EQ(back.after, flow.after);
+  EXPECT_EQ(back.ids, flow.ids);
+  const auto unnumbered = boost::make_shared<SparseFlowMsg>(*message);
+  unnumbered->ids.pop_back();
+  EXPECT_NE(errorOf([&] { fromMessage(*unnumbered); }).find("1 ids for 2 corners"),
+            std::string::npos);
   const auto broken = boost::make_shared<SparseFlowMsg>(*message);
   broken->after.pop_back();
   EXPECT_NE(errorOf([&] { fromMessage(*broken); }).find("4 numbers before and 3 after"),

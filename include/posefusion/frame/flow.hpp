@@ -14,6 +14,7 @@ struct SparseFlow {
   std::int64_t from_ns = 0;  ///< stamp of the earlier frame
   std::int64_t to_ns = 0;    ///< stamp of the later frame
   std::vector<cv::Point2f> before, after;
+  std::vector<std::uint32_t> ids;  ///< rising; a corner keeps its number while it is followed
 
   bool empty() const { return before.empty(); }
 };
@@ -26,8 +27,8 @@ struct FollowedPoints {
 
 /// Sparse optical flow between successive frames (pyramidal Lucas and Kanade; Bouguet 2001) on
 /// half-size grey images: of corners (Shi and Tomasi 1994), which tell how the camera moved, and of
-/// any other points, which tell how people did. The images are prepared once for both. Not thread
-/// safe.
+/// any other points, which tell how people did. The images are prepared once for both; slow changes
+/// of brightness are taken out of them. Not thread safe.
 class FlowTracker {
  public:
   /// Takes in the next frame and follows the corners of the one before; a corner counts only if it
@@ -40,16 +41,24 @@ class FlowTracker {
   void reset();
 
  private:
+  void flatten();
+  void followCorners();
+  cv::Point2f wholeShift();
+  void keep(const std::vector<cv::Point2f>& corners);
   void findCorners();
 
   std::vector<cv::Mat> last_, newest_;  // pyramids
   std::vector<cv::Point2f> corners_;    // of the newest frame, pixels of its pyramid
+  std::vector<std::uint32_t> ids_;      // of the corners
+  std::uint32_t next_id_ = 0;
   SparseFlow flow_;
   float scale_ = 1.0F;  // pyramid pixels per frame pixel
   cv::Size frame_size_;
   bool comparable_ = false;
   std::int64_t newest_ns_ = 0;
-  cv::Mat small_, grey_;
+  cv::Mat small_, grey_, mean_, free_, coarse_before_, coarse_after_, hanning_;
+  std::vector<cv::Point2f> there_, back_;
+  std::vector<std::uint8_t> found_, returned_;
 };
 
 }  // namespace pf

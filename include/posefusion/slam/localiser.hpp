@@ -83,11 +83,13 @@ class Localiser {
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              std::int64_t stamp_ns, double elapsed_s);
-  void remember(const WorkingFrame& frame, std::int64_t stamp_ns);
+  void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
+                const Location& location, std::int64_t stamp_ns);
 
   TrackingConfig config_;
   TrackingState state_ = TrackingState::initializing;
   Previous previous_;
+  Landmarks landmarks_;
   Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
   Brightness brightness_;
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that was believed

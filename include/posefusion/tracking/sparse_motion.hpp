@@ -7,6 +7,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
+#include "posefusion/tracking/landmarks.hpp"
 
 namespace pf {
 
@@ -22,17 +23,20 @@ struct SparseMotion {
 
 /// What is known of the corners' surroundings.
 struct FlowScene {
-  const cv::Mat&
-      before_m;  ///< depth of the earlier frame, full size, CV_32FC1 in metres, 0 = invalid
-  const cv::Mat& after_m;  ///< of the later frame; people removed in both
-  const ModelView* view;   ///< the map from the earlier frame's pose; null where there is none
+  const cv::Mat& before_m;  ///< depth of the earlier frame, full size, CV_32FC1 in metres, 0 =
+                            ///< invalid; empty where that frame is not at hand
+  const cv::Mat& after_m;   ///< of the later frame; people removed in both
+  const ModelView* view;    ///< the map from the earlier frame's pose; null where there is none
+  const Landmarks* landmarks = nullptr;  ///< corners whose place in the map is known; may be null
+  Eigen::Isometry3d T_map_before = Eigen::Isometry3d::Identity();  ///< pose of the earlier frame
 };
 
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
 /// of the map: people who were not masked): P3P with RANSAC (Fischler and Bolles 1981; fixed seed),
-/// then least squares over reprojection and inverse depth with Cauchy's weights. The camera is that
-/// of the full image, without distortion. Not found with fewer than a dozen corners or when less
-/// than half of them agree.
+/// then least squares over reprojection and inverse depth with Cauchy's weights. Known landmarks
+/// stand where the map has them, so that the motion does not drift from frame to frame; where they
+/// do not agree, it is measured from the earlier frame alone. The camera is that of the full image,
+/// without distortion. Not found with fewer than a dozen corners or when too few of them agree.
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera);
 

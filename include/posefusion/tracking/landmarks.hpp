@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "posefusion/core/camera.hpp"
+#include "posefusion/frame/flow.hpp"
+
+namespace pf {
+
+/// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
+/// allowed: dark and bright things return little. `depth_m`: CV_32FC1, 0 = invalid.
+double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel);
+
+/// A corner of the world in space, for as long as it is followed.
+struct Landmark {
+  std::uint32_t id = 0;                          ///< of the corner, see SparseFlow
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< m, map frame: mean of what was seen
+  double weight = 0;                             ///< 1 / variance of the depth, summed up
+  int misses = 0;                                ///< frames in which it was somewhere else
+
+  bool isBelieved() const;
+};
+
+/// The corners that are followed now, placed in the map by the poses of the frames that saw them.
+/// They hold a motion to where it began: what is measured from one frame to the next alone drifts
+/// several times faster. A corner on a person moves away from its place, and is found out.
+class Landmarks {
+ public:
+  /// Null when the corner is new.
+  const Landmark* find(std::uint32_t id) const;
+
+  /// Takes in where a frame at a known pose sees its corners; corners no longer followed are
+  /// forgotten. Known landmarks move only by frames whose pose is `believed`.
+  void update(const SparseFlow& flow, const cv::Mat& depth_m, const PinholeCamera& camera,
+              const Eigen::Isometry3d& T_map_camera, bool believed);
+
+  /// Follows a correction of the map frame.
+  void move(const Eigen::Isometry3d& T_new_old);
+
+  void clear() { landmarks_.clear(); }
+
+ private:
+  std::vector<Landmark> landmarks_, next_;  // by rising number
+};
+
+}  // namespace pf

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/tracking/landmarks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion/tracking/sparse_motion.hpp"
+
+namespace pf {
+namespace {
+
+PinholeCamera vga() {
+  PinholeCamera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 525;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  return camera;
+}
+
+/// A camera that goes along a wall of corners, and what it sees of them.
+class LandmarksTest : public ::testing::Test {
+ protected:
+  static constexpr double kWall_m = 2.0;
+
+  /// Corners on the wall, `walking` of them moving sideways by themselves.
+  LandmarksTest() : depth_m_(camera_.height, camera_.width, CV_32FC1, cv::Scalar(kWall_m)) {
+    std::uniform_real_distribution<double> x(-0.6, 0.6), y(-0.5, 0.5);
+    for (int i = 0; i < 100; ++i) points_.emplace_back(x(random_), y(random_), kWall_m);
+  }
+
+  static Eigen::Isometry3d poseAt(int frame) {
+    return Eigen::Isometry3d(Eigen::Translation3d(0.002 * frame, 0, 0));
+  }
+
+  cv::Point2f seen(std::size_t i, int frame, int walking, double noise_px) {
+    std::normal_distribution<double> noise(0.0, noise_px);
+    Eigen::Vector3d p = points_[i];
+    if (i < static_cast<std::size_t>(walking)) p.x() += 0.004 * frame;
+    const Eigen::Vector2d pixel = camera_.project(poseAt(frame).inverse() * p);
+    return {static_cast<float>(pixel.x() + noise(random_)),
+            static_cast<float>(pixel.y() + noise(random_))};
+  }
+
+  /// The flow into a frame; call with rising numbers.
+  SparseFlow flowTo(int frame, int walking, double noise_px) {
+    SparseFlow flow;
+    flow.from_ns = frame - 1;
+    flow.to_ns = frame;
+    if (last_.empty()) {
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        last_.push_back(seen(i, 0, walking, noise_px));
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      flow.ids.push_back(static_cast<std::uint32_t>(10 + i));
+      flow.before.push_back(last_[i]);
+      last_[i] = seen(i, frame, walking, noise_px);
+      flow.after.push_back(last_[i]);
+    }
+    return flow;
+  }
+
+  void update(const SparseFlow& flow, int frame, bool believed = true) {
+    landmarks_.update(flow, depth_m_, camera_, poseAt(frame), believed);
+  }
+
+  std::mt19937 random_{5};
+  PinholeCamera camera_ = vga();
+  cv::Mat depth_m_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<cv::Point2f> last_;
+  Landmarks landmarks_;
+};
+
+TEST_F(LandmarksTest, StandWhereTheyWereSeen) {
+  for (int k = 1; k <= 10; ++k) update(flowTo(k, 0, 0.0), k);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Landmark* landmark = landmarks_.find(static_cast<std::uint32_t>(10 + i));
+    ASSERT_NE(landmark, nullptr);
+    EXPECT_TRUE(landmark->isBelieved());
+    EXPECT_LT((landmark->at - points_[i]).norm(), 1e-3);
+  }
+  EXPECT_EQ(landmarks_.find(9), nullptr);
+  EXPECT_EQ(landmarks_.find(110), nullptr);
+}
+
+TEST_F(LandmarksTest, SomebodyWhoWalksIsFoundOut) {
+  for (int k = 1; k <= 30; ++k) update(flowTo(k, 20, 0.2), k);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    EXPECT_EQ(landmarks_.find(static_cast<std::uint32_t>(10 + i))->isBelieved(), i >= 20) << i;
+  }
+}
+
+TEST_F(LandmarksTest, AFrameThatIsNotBelievedMovesNone) {
+  update(flowTo(1, 0, 0.0), 1);
+  const Eigen::Vector3d before = landmarks_.find(10)->at;
+  landmarks_.update(flowTo(2, 0, 0.0), depth_m_, camera_, poseAt(9), false);
+  EXPECT_EQ(landmarks_.find(10)->at, before);
+  landmarks_.update(flowTo(3, 0, 0.0), depth_m_, camera_, poseAt(4), true);
+  EXPECT_NE(landmarks_.find(10)->at, before);
+}
+
+TEST_F(LandmarksTest, AreForgottenWithTheirCornersAndFollowACorrection) {
+  SparseFlow flow = flowTo(1, 0, 0.0);
+  update(flow, 1);
+  const Eigen::Vector3d before = landmarks_.find(12)->at;
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.5, 0, 1));
+  landmarks_.move(T);
+  EXPECT_LT((landmarks_.find(12)->at - T * before).norm(), 1e-12);
+  flow.ids.resize(1);
+  flow.before.resize(1);
+  flow.after.resize(1);
+  update(flow, 1);
+  EXPECT_NE(landmarks_.find(10), nullptr);
+  EXPECT_EQ(landmarks_.find(12), nullptr);
+}
+
+TEST_F(LandmarksTest, HoldAMotionThatDriftsFromFrameToFrame) {
+  // The same flows, summed up with and without landmarks: only the latter walks off.
+  Landmarks none;
+  Eigen::Isometry3d held = poseAt(0), alone = poseAt(0);
+  const auto step = [&](const SparseFlow& flow, const Landmarks* landmarks,
+                        const Eigen::Isometry3d& T) {
+    const SparseMotion motion =
+        estimateMotion(flow, {depth_m_, depth_m_, nullptr, landmarks, T}, camera_);
+    EXPECT_TRUE(motion.found);
+    return Eigen::Isometry3d(T * motion.T_before_after);
+  };
+  double drift_held = 0, drift_alone = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const SparseFlow flow = flowTo(k, 0, 0.4);
+    held = step(flow, &landmarks_, held);
+    alone = step(flow, nullptr, alone);
+    landmarks_.update(flow, depth_m_, camera_, held, true);
+    drift_held = std::max(drift_held, (held.translation() - poseAt(k).translation()).norm());
+    drift_alone = std::max(drift_alone, (alone.translation() - poseAt(k).translation()).norm());
+  }
+  EXPECT_LT(drift_held, 0.5 * drift_alone);
+}
+
+}  // namespace
+}  // namespace pf
