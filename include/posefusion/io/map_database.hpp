@@ -59,9 +59,9 @@ struct MapUpdate : MapContent {
   std::vector<KeyframeImages> images;
 };
 
-/// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). Nobody else can open it
-/// meanwhile. A process that dies leaves what the last whole write() brought. Not thread safe, but
-/// may be used from any one thread.
+/// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). Nobody else can open
+/// it meanwhile. A process that dies leaves what the last whole write() brought. Not thread safe,
+/// but may be used from any one thread.
 class MapWriter {
  public:
   enum class Mode {
