@@ -168,6 +168,14 @@ TEST(Plan, ShowsTheFloorBothPathsAndWrongPoses) {
   EXPECT_GT(countColor(drawPlan(plan), {222, 30, 40}), 2 * in_legend);
 }
 
+TEST(Plan, NeedsNoTruth) {
+  const Plan plan{flatRoom(), {}, straightWalk(1), {}, "a map"};
+  const cv::Mat picture = drawPlan(plan);
+  EXPECT_EQ(picture.cols, 1200);
+  EXPECT_EQ(countColor(picture, {222, 30, 40}), 0) << "nor a legend for wrong poses";
+  EXPECT_GT(countColor(picture, {0, 104, 210}), 200);
+}
+
 TEST(Plan, TheLongSideLiesAcross) {
   Plan plan{flatRoom(), straightWalk(1), straightWalk(1), {}, ""};
   const cv::Mat lying = drawPlan(plan);

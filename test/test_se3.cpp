@@ -47,6 +47,21 @@ TEST(Se3, OrthonormalisedRepairsADriftedRotation) {
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
 }
 
+TEST(Se3, LeftJacobianIsTheDerivativeOfExp) {
+  std::mt19937 random(4);
+  constexpr double kStep = 1e-6;
+  for (const double angle : {1e-9, 1e-3, 0.1, 0.2999, 0.3001, 1.0, 2.5, 3.1}) {
+    const Vector6d twist = randomTwist(random, angle);
+    const Matrix6d J = leftJacobianSe3(twist);
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d d = kStep * Vector6d::Unit(k);
+      const Vector6d numeric =
+          logSe3(expSe3(twist + d) * expSe3(twist - d).inverse()) / (2 * kStep);
+      EXPECT_LT((J.col(k) - numeric).norm(), 1e-7) << "angle " << angle << ", column " << k;
+    }
+  }
+}
+
 TEST(Se3, AdjointMovesATwistToAnotherFrame) {
   Vector6d pose, twist;
   pose << 0.3, -0.2, 1.5, 0.4, 0.7, -0.3;

@@ -8,6 +8,9 @@ namespace {
 
 // Coefficients of the exponential series; below this angle the Taylor form is exact to rounding.
 constexpr double kSmallAngle = 1e-5;
+// Below this angle so many terms of the left Jacobian's series are exact to rounding.
+constexpr double kSeriesAngle = 0.3;
+constexpr int kSeriesTerms = 11;
 
 /// V of exp: translation = V * v.
 Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& omega) {
@@ -64,6 +67,25 @@ Matrix6d adjoint(const Eigen::Isometry3d& T) {
   A.topLeftCorner<3, 3>() = A.bottomRightCorner<3, 3>() = T.linear();
   A.topRightCorner<3, 3>() = hat(T.translation()) * T.linear();
   return A;
+}
+
+Matrix6d leftJacobianSe3(const Vector6d& twist) {
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = hat(twist.tail<3>());
+  ad.topRightCorner<3, 3>() = hat(twist.head<3>());
+  const double angle = twist.tail<3>().norm();
+  if (angle < kSeriesAngle) {  // the closed form loses digits here: sum of ad^n / (n + 1)!
+    Matrix6d sum = Matrix6d::Identity();
+    for (int n = kSeriesTerms; n >= 1; --n) sum = Matrix6d::Identity() + ad * sum / (n + 1.0);
+    return sum;
+  }
+  const double a = angle, sine = std::sin(a), cosine = std::cos(a);
+  const double a2 = a * a, a3 = a2 * a;
+  const Matrix6d ad2 = ad * ad;
+  return Matrix6d::Identity() + (4 - a * sine - 4 * cosine) / (2 * a2) * ad +
+         (4 * a - 5 * sine + a * cosine) / (2 * a3) * ad2 +
+         (2 - a * sine - 2 * cosine) / (2 * a2 * a2) * ad2 * ad +
+         (2 * a - 3 * sine + a * cosine) / (2 * a2 * a3) * ad2 * ad2;
 }
 
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {

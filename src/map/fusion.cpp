@@ -135,7 +135,9 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   });
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     counts.merged += results[k].merged;
-    map.blocks_[ranges[k].block].bounds.extend(results[k].moved);
+    SurfelBlock& block = map.blocks_[ranges[k].block];
+    block.bounds.extend(results[k].moved);
+    block.changed = map.frame();
   }
 }
 

@@ -60,9 +60,13 @@ SurfelArrays SurfelMap::collect() const {
   return all;
 }
 
+std::uint64_t SurfelMap::cellAt(float x, float y, float z) const {
+  return (cellOf(x, block_side_m_) << (2 * kCellBits)) | (cellOf(y, block_side_m_) << kCellBits) |
+         cellOf(z, block_side_m_);
+}
+
 std::uint32_t SurfelMap::blockAt(float x, float y, float z) {
-  const std::uint64_t key = (cellOf(x, block_side_m_) << (2 * kCellBits)) |
-                            (cellOf(y, block_side_m_) << kCellBits) | cellOf(z, block_side_m_);
+  const std::uint64_t key = cellAt(x, y, z);
   const auto found = index_.find(key);
   if (found != index_.end()) return found->second;
   const auto limit = static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0);
@@ -124,6 +128,7 @@ std::size_t SurfelMap::add(const SurfelArrays& s) {
       block.surfels.append(s, groups[k].members.data(), groups[k].members.size());
       fit(block.surfels, first, block);
       block.any_unstable = true;
+      block.changed = frame_;
     }
   });
   refused_ += finite - added;
@@ -142,6 +147,7 @@ void SurfelMap::keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& bl
     smaller.assign(array.begin(), array.end());
     array.swap(smaller);
   });
+  block.changed = frame_;
   block.bounds.setEmpty();
   block.largest_radius = 0;
   fit(block.surfels, 0, block);

@@ -97,9 +97,11 @@ void drawLegend(const Plan& plan, const PlanView& view, int top, Pen& pen) {
       pen.line({p, {p.x + 32, p.y}}, color, kPathWidth);
     };
   };
-  entry("truth", 74, stroke(kTruth));
+  if (!plan.truth.empty()) entry("truth", 74, stroke(kTruth));
   entry("estimate", 104, stroke(kEstimate));
-  entry("wrong pose", 124, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 4, kWrong); });
+  if (!plan.truth.empty()) {
+    entry("wrong pose", 124, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 4, kWrong); });
+  }
   entry("start", 74, [&](const cv::Point2d& p) { pen.dot({p.x + 16, p.y}, 6, kInk); });
   entry("end", 74, [&](const cv::Point2d& p) { pen.square({p.x + 16, p.y}, 5, kInk); });
   pen.text(plan.title, {PlanView::kMargin, y + 40});

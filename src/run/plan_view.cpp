@@ -50,7 +50,7 @@ void PlanView::Range::extend(std::vector<double> values, double cut) {
   high = std::max(high, values[values.size() - 1 - skip]);
 }
 
-PlanView::PlanView(const Plan& plan) : up_(upOf(plan.truth)) {
+PlanView::PlanView(const Plan& plan) : up_(upOf(plan.leading())) {
   // Axes of the picture: those of the frame where they lie level.
   right_ = std::abs(up_.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   right_ = (right_ - right_.dot(up_) * up_).normalized();

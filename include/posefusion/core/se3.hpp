@@ -26,6 +26,11 @@ Vector6d logSe3(const Eigen::Isometry3d& T);
 /// Takes twists of one frame to another: exp(adjoint(T) * twist) = T * exp(twist) * T^-1.
 Matrix6d adjoint(const Eigen::Isometry3d& T);
 
+/// Left Jacobian of the exponential: exp(twist + d) = exp(leftJacobianSe3(twist) * d) * exp(twist)
+/// for small d. The right one is that of -twist. Barfoot, "State Estimation for Robotics", 2017,
+/// equation (7.83) ff.
+Matrix6d leftJacobianSe3(const Vector6d& twist);
+
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 

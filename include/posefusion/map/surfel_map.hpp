@@ -14,18 +14,21 @@
 
 namespace pf {
 
+class Deformation;
+
 /// The surfels that were made in one cube of space. Fusion may move them a little beyond its faces.
 struct SurfelBlock {
   SurfelArrays surfels;        ///< in the order in which they were made
   Eigen::AlignedBox3f bounds;  ///< holds all centres (m, map frame)
   float largest_radius = 0;    ///< m
   bool any_unstable = false;   ///< false: all are stable
+  int changed = -1;            ///< frame of the last change (or somewhat later): what to save
 };
 
 /// The surfels, in blocks, and the frame clock. A frame touches only the blocks in view, so that
-/// its cost does not grow with the map. Has one owner (the mapper); changed by Fuser, add() and
-/// removeIf(). The order of blocks and of surfels in them depends neither on threads nor on
-/// hashing.
+/// its cost does not grow with the map. Has one owner (the mapper); changed by Fuser, add(),
+/// removeIf() and deform(). The order of blocks and of surfels in them depends neither on threads
+/// nor on hashing.
 class SurfelMap {
  public:
   /// Side of a block (m): about 5,000 surfels of a surface seen at 2 m with half resolution. Much
@@ -94,13 +97,23 @@ class SurfelMap {
 
   void clear();
 
+  /// Takes up a saved map: these surfels, and the number of its last frame.
+  void restore(const SurfelArrays& surfels, int frame) {
+    clear();
+    frame_ = frame;
+    add(surfels);
+  }
+
  private:
   friend class Fuser;
+  friend void deform(SurfelMap& map, const Deformation& deformation);
 
   static constexpr float kMostOutweighed = 24;  // frames
 
-  /// The block around a point, made when it is new; none when there is no memory for it.
+  /// The cube around a point, and the block of it, made when it is new; none when there is no
+  /// memory for it.
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+  std::uint64_t cellAt(float x, float y, float z) const;
   std::uint32_t blockAt(float x, float y, float z);
   /// Reserves memory in a block; returns for how many of `count` more surfels there is room.
   std::size_t makeRoom(SurfelBlock& block, std::size_t count);

@@ -10,13 +10,15 @@
 
 namespace pf {
 
-/// What a plan shows, all in the frame of the truth.
+/// What a plan shows, all in the frame of the truth (or of the estimate where there is no truth).
 struct Plan {
   std::vector<SurfacePoint> surface;  ///< the room, or the map; may be empty
-  Trajectory truth;                   ///< must not be empty
-  Trajectory estimate;
-  std::vector<std::size_t> wrong;  ///< indices of wrong poses of the estimate
-  std::string title;               ///< one line of figures
+  Trajectory truth;                   ///< may be empty
+  Trajectory estimate;                ///< may be empty where there is a truth
+  std::vector<std::size_t> wrong;     ///< indices of wrong poses of the estimate
+  std::string title;                  ///< one line of figures
+
+  const Trajectory& leading() const { return truth.empty() ? estimate : truth; }
 };
 
 /// Up in the frame of a trajectory: against the mean of the camera's y axis (down in the image),

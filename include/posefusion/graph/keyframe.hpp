@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace pf {
+
+/// A node of the pose graph.
+struct Keyframe {
+  int id = -1;       ///< place in PoseGraph::keyframes(), which gives it
+  int fragment = 0;  ///< piece of the world that is known to hang together; 0 holds the origin
+  std::int64_t stamp_ns = 0;
+  std::int32_t map_frame = 0;  ///< number of the fused frame, as in SurfelArrays::created
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+};
+
+/// The pose of any frame, kept relative to a keyframe, so that it follows corrections.
+struct RelativePose {
+  int keyframe = -1;
+  Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace pf

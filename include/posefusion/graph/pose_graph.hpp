@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "posefusion/graph/config.hpp"
+#include "posefusion/graph/constraint.hpp"
+#include "posefusion/graph/deformation.hpp"
+#include "posefusion/graph/keyframe.hpp"
+
+namespace pf {
+
+/// What one optimisation did.
+struct GraphResult {
+  struct Error {
+    PoseConstraint constraint;
+    double before = 0, after = 0;  ///< chi-square
+  };
+  struct Refusal {
+    PoseConstraint constraint;
+    std::string reason;
+  };
+
+  bool accepted = false;         ///< new loops hold, the poses have changed
+  std::string reason;            ///< why not; empty when accepted
+  std::vector<Refusal> refused;  ///< loops taken out, as they do not fit with the others
+  std::vector<Error> errors;     ///< of all constraints, when accepted
+  Deformation deformation;       ///< identity unless accepted
+};
+
+/// Keyframes and what is measured between them. Loops wait until optimise() has proved them: either
+/// all that holds is met afterwards within what the covariances promise, or nothing changes.
+/// Results are the same to the bit on every run. Not thread safe.
+class PoseGraph {
+ public:
+  explicit PoseGraph(const GraphConfig& config) : config_(config) {}
+
+  /// Takes up a graph that was saved. Throws InputError saying what does not fit together.
+  PoseGraph(const GraphConfig& config, std::vector<Keyframe> keyframes,
+            std::vector<PoseConstraint> constraints, int version);
+
+  /// Adds the first keyframe of a piece that was not tracked from the one before: the map's first,
+  /// the first of a fragment, or found again after a loss. Returns its id (keyframe.id is ignored).
+  int addKeyframe(Keyframe keyframe);
+
+  /// Adds a keyframe tracked from keyframe `from`; both poses say what was measured. The covariance
+  /// is that of tracking over the step (twist in the new camera); drift is added to it.
+  int addKeyframe(Keyframe keyframe, int from, const Matrix6d& covariance);
+
+  /// A loop between keyframes of one fragment, for the next optimise(); the error that any loop has
+  /// is added to its covariance. Throws std::invalid_argument for unknown or equal keyframes, other
+  /// fragments, or numbers that are not finite.
+  void addLoop(const PoseConstraint& loop);
+
+  /// Fits the poses to all constraints (Levenberg-Marquardt on SE(3), Cauchy loss on loops). The
+  /// first keyframe of each connected part keeps its pose. While a constraint is missed by more
+  /// than max_chi_square, or the new loops bend odometry more than they promise, the new loop that
+  /// fits worst is taken out and the rest tried again from where it began.
+  GraphResult optimise();
+
+  /// Two fragments by a loop between them: the later moves rigidly to where the loop wants it and
+  /// takes the other's number, then all is optimised. Refused like any loop: nothing changes then.
+  /// Throws like addLoop(), and when both are of one fragment.
+  GraphResult joinFragment(const PoseConstraint& loop);
+
+  Eigen::Isometry3d poseOf(const RelativePose& pose) const {
+    return keyframes_.at(static_cast<std::size_t>(pose.keyframe)).T_map_camera *
+           pose.T_keyframe_camera;
+  }
+
+  /// All that must be kept to go on later.
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const std::vector<PoseConstraint>& constraints() const { return constraints_; }  ///< that hold
+  int version() const { return version_; }  ///< number of accepted corrections
+
+  const GraphConfig& config() const { return config_; }
+
+ private:
+  struct Attempt;
+  int fragmentOf(int keyframe) const {
+    return keyframes_.at(static_cast<std::size_t>(keyframe)).fragment;
+  }
+  PoseConstraint checkedLoop(const PoseConstraint& loop) const;
+  Attempt attempt(const std::vector<Keyframe>& from,
+                  const std::vector<PoseConstraint>& loops) const;
+  /// What stands against accepting these errors, the last of them of new loops; empty: nothing.
+  std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
+  GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
+  void accept(Attempt& attempt, GraphResult& result);
+  Deformation deformationTo(const std::vector<Keyframe>& corrected) const;
+
+  GraphConfig config_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<PoseConstraint> constraints_, waiting_;
+  int version_ = 0;
+};
+
+}  // namespace pf

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph_checks.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+constexpr double kRotationTolerance = 1e-6;
+
+bool isRigid(const Eigen::Isometry3d& T) {
+  const Eigen::Matrix3d R = T.linear();
+  return T.matrix().allFinite() && R.determinant() > 0 &&
+         (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < kRotationTolerance;
+}
+
+}  // namespace
+
+void throwUnlessUsable(const Keyframe& keyframe) {
+  const std::string name = "keyframe " + std::to_string(keyframe.id);
+  if (!isRigid(keyframe.T_map_camera)) {
+    throw std::invalid_argument(name + ": the pose is no rigid motion");
+  }
+  if (keyframe.fragment < 0) {
+    throw std::invalid_argument(name + ": fragment is " + std::to_string(keyframe.fragment) +
+                                ", expected 0 or more");
+  }
+}
+
+void throwUnlessUsable(const PoseConstraint& c) {
+  const std::string name = "constraint " + std::to_string(c.from) + " -> " + std::to_string(c.to);
+  if (!isRigid(c.T_from_to)) throw std::invalid_argument(name + ": no rigid motion");
+  const Eigen::LLT<Matrix6d> root(c.covariance);
+  if (!c.covariance.allFinite() || root.info() != Eigen::Success) {
+    throw std::invalid_argument(name + ": the covariance is not positive definite");
+  }
+}
+
+void throwUnlessBetween(const PoseConstraint& c, std::size_t keyframes) {
+  const auto known = [&](int id) { return id >= 0 && static_cast<std::size_t>(id) < keyframes; };
+  if (known(c.from) && known(c.to) && c.from != c.to) return;
+  throw std::invalid_argument("constraint " + std::to_string(c.from) + " -> " +
+                              std::to_string(c.to) + ": expected two different ones of " +
+                              std::to_string(keyframes) + " keyframes");
+}
+
+void checkGraph(const std::vector<Keyframe>& keyframes,
+                const std::vector<PoseConstraint>& constraints, int version) {
+  try {
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+      if (keyframes[i].id != static_cast<int>(i)) {
+        throw std::invalid_argument("keyframe " + std::to_string(i) + ": its id is " +
+                                    std::to_string(keyframes[i].id));
+      }
+      throwUnlessUsable(keyframes[i]);
+    }
+    for (const PoseConstraint& c : constraints) {
+      throwUnlessBetween(c, keyframes.size());
+      throwUnlessUsable(c);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what());
+  }
+  if (version < 0) {
+    throw InputError("version of the graph is " + std::to_string(version) + ", expected 0 or more");
+  }
+}
+
+}  // namespace pf

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_encoding.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::size_t kIntrinsics = 9;
+using RowMajor34d = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+template <typename Matrix>
+std::string bytesOf(const Matrix& m) {
+  return std::string(reinterpret_cast<const char*>(m.data()),
+                     sizeof(double) * static_cast<std::size_t>(m.size()));
+}
+
+template <typename Matrix>
+Matrix matrixOf(std::string_view bytes, const char* name) {
+  Matrix m;
+  if (bytes.size() != sizeof(double) * static_cast<std::size_t>(m.size())) {
+    throw InputError(std::string(name) + " has " + std::to_string(bytes.size()) +
+                     " bytes, expected " + std::to_string(sizeof(double) * m.size()));
+  }
+  std::memcpy(m.data(), bytes.data(), bytes.size());
+  if (!m.allFinite()) throw InputError(std::string(name) + " is not finite");
+  return m;
+}
+
+bool allFinite(const std::vector<float>& values) {
+  float sum = 0;  // of zeros, unless one is infinite or NaN
+  for (const float value : values) sum += value * 0.0F;
+  return sum == 0.0F;
+}
+bool allFinite(const std::vector<std::int32_t>&) { return true; }
+
+void checkFrames(const SurfelArrays& s, int last_frame) {
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (s.created[i] < -1 || s.created[i] > last_frame || s.seen[i] > last_frame) {
+      throw InputError("a surfel is of frame " + std::to_string(s.created[i]) + ", seen in " +
+                       std::to_string(s.seen[i]) + ", expected at most " +
+                       std::to_string(last_frame));
+    }
+  }
+}
+
+}  // namespace
+
+std::string encode(const Eigen::Isometry3d& T) {
+  const RowMajor34d m = T.matrix().topRows<3>();
+  return bytesOf(m);
+}
+
+std::string encode(const Matrix6d& covariance) { return bytesOf(covariance); }
+
+std::string encode(const SurfelArrays& surfels) {
+  std::string bytes;
+  bytes.reserve(surfels.size() * SurfelArrays::bytesPerSurfel());
+  SurfelArrays nothing;
+  nothing.forEachArray(surfels, [&](const auto&, const auto& array) {
+    bytes.append(reinterpret_cast<const char*>(array.data()), array.size() * sizeof(array[0]));
+  });
+  return bytes;
+}
+
+std::string encodePng(const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes)) throw InputError("an image cannot be encoded");
+  return std::string(bytes.begin(), bytes.end());
+}
+
+std::string encodeIntrinsics(const PinholeCamera& c) {
+  Eigen::Matrix<double, kIntrinsics, 1> values;
+  values << c.fx, c.fy, c.cx, c.cy, c.distortion[0], c.distortion[1], c.distortion[2],
+      c.distortion[3], c.distortion[4];
+  return bytesOf(values);
+}
+
+Eigen::Isometry3d decodeTransform(std::string_view bytes) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.matrix().topRows<3>() = matrixOf<RowMajor34d>(bytes, "a transform");
+  return T;
+}
+
+Matrix6d decodeCovariance(std::string_view bytes) {
+  return matrixOf<Matrix6d>(bytes, "a covariance");
+}
+
+SurfelArrays decodeSurfels(std::string_view bytes, int last_frame) {
+  constexpr std::size_t kBytes = SurfelArrays::bytesPerSurfel();
+  if (bytes.size() % kBytes != 0) {
+    throw InputError("a block of surfels has " + std::to_string(bytes.size()) +
+                     " bytes, expected a multiple of " + std::to_string(kBytes));
+  }
+  SurfelArrays surfels;
+  surfels.resize(bytes.size() / kBytes);
+  const char* next = bytes.data();
+  bool finite = true;
+  surfels.forEachArray([&](auto& array) {
+    if (array.empty()) return;
+    std::memcpy(array.data(), next, array.size() * sizeof(array[0]));
+    next += array.size() * sizeof(array[0]);
+    finite &= allFinite(array);
+  });
+  if (!finite) throw InputError("a surfel has a value that is not finite");
+  checkFrames(surfels, last_frame);
+  return surfels;
+}
+
+void decodeIntrinsics(std::string_view bytes, PinholeCamera& c) {
+  const auto v = matrixOf<Eigen::Matrix<double, kIntrinsics, 1>>(bytes, "the camera");
+  c.fx = v[0], c.fy = v[1], c.cx = v[2], c.cy = v[3];
+  for (std::size_t i = 0; i < c.distortion.size(); ++i) {
+    c.distortion[i] = v[static_cast<Eigen::Index>(4 + i)];
+  }
+}
+
+std::int64_t checksumOf(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
+    hash = (hash ^ word) * 0x100000001b3ULL;
+    hash ^= hash >> 32;  // else high bits would never reach low ones
+  }
+  return static_cast<std::int64_t>(hash);
+}
+
+}  // namespace pf

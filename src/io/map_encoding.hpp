@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion/io/map_database.hpp"
+
+namespace pf {
+
+/// The bytes of a map file's values, little-endian. Decoding throws InputError saying what is
+/// wrong, without the file.
+std::string encode(const Eigen::Isometry3d& T);
+std::string encode(const Matrix6d& covariance);
+std::string encode(const SurfelArrays& surfels);
+std::string encodePng(const cv::Mat& image);
+std::string encodeIntrinsics(const PinholeCamera& camera);
+
+Eigen::Isometry3d decodeTransform(std::string_view bytes);
+Matrix6d decodeCovariance(std::string_view bytes);
+/// Surfels of frames up to `last_frame`, all values finite.
+SurfelArrays decodeSurfels(std::string_view bytes, int last_frame);
+void decodeIntrinsics(std::string_view bytes, PinholeCamera& camera);
+
+/// Tells changed bytes with 64 bits (FNV-1a over words).
+std::int64_t checksumOf(std::string_view bytes);
+
+}  // namespace pf

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_header.hpp"
+
+#include <set>
+#include <string>
+
+#include "map_schema.hpp"
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+void checkTables(const SqliteDatabase& database) {
+  std::set<std::string> expected(kMapTables.begin(), kMapTables.end()), found;
+  SqliteStatement rows = database.prepare("SELECT sql FROM sqlite_master");
+  while (rows.step()) found.emplace(rows.blob(0));
+  if (found != expected) throw InputError(database.path() + ": has other tables than a map");
+}
+
+void checkPages(const SqliteDatabase& database) {
+  SqliteStatement rows = database.prepare("PRAGMA integrity_check(1)");
+  const std::string answer = rows.step() ? std::string(rows.blob(0)) : "no answer";
+  if (answer != "ok") throw InputError(database.path() + ": is damaged: " + answer);
+}
+
+}  // namespace
+
+void makeMapTables(const SqliteDatabase& database) {
+  const SqliteDatabase& d = database;
+  SqliteTransaction transaction(d);
+  d.run("PRAGMA application_id=" + std::to_string(kMapApplication));
+  d.run("PRAGMA user_version=" + std::to_string(kMapVersion));
+  for (const char* table : kMapTables) d.run(table);
+  transaction.commit();
+}
+
+void checkMapFile(const SqliteDatabase& database) {
+  if (database.integer("PRAGMA application_id") != kMapApplication) {
+    throw InputError(database.path() + ": is no map of posefusion");
+  }
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  if (version != kMapVersion) {
+    throw InputError(database.path() + ": is a map of version " + std::to_string(version) +
+                     ", expected " + std::to_string(kMapVersion) +
+                     (version > kMapVersion ? ": a newer posefusion made it" : ""));
+  }
+  checkTables(database);
+  checkPages(database);
+}
+
+}  // namespace pf

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "map_encoding.hpp"
+#include "map_header.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/map_database.hpp"
+#include "sqlite.hpp"
+
+namespace pf {
+namespace {
+
+/// Makes the file, empty, so that two who create it cannot both succeed.
+SqliteDatabase openNew(const std::string& path) {
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (fd < 0) throw InputError(path + ": cannot be made: " + std::strerror(errno));
+  close(fd);
+  std::error_code ignored;
+  std::filesystem::remove(path + "-wal", ignored);  // of a map of that name that was deleted
+  return SqliteDatabase(path, SqliteDatabase::Access::write);
+}
+
+void setUp(const SqliteDatabase& database) {
+  database.run("PRAGMA page_size=16384");  // blocks are large; counts for new files alone
+  database.run("PRAGMA locking_mode=EXCLUSIVE");
+  database.run("PRAGMA journal_mode=WAL");
+  database.run("PRAGMA synchronous=NORMAL");  // a power cut may cost the last write, never the file
+}
+
+bool same(const Keyframe& a, const Keyframe& b) {
+  return a.fragment == b.fragment && a.stamp_ns == b.stamp_ns && a.map_frame == b.map_frame &&
+         a.T_map_camera.matrix() == b.T_map_camera.matrix();
+}
+
+bool same(const PoseConstraint& a, const PoseConstraint& b) {
+  return a.from == b.from && a.to == b.to && a.kind == b.kind && a.covariance == b.covariance &&
+         a.T_from_to.matrix() == b.T_from_to.matrix();
+}
+
+/// Writes the rows of a list that differ from those written before, by their places.
+template <typename Row, typename Write>
+void writeChanged(const std::vector<Row>& rows, const std::vector<Row>& written,
+                  const Write& write) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i >= written.size() || !same(rows[i], written[i]))
+      write(static_cast<std::int64_t>(i), rows[i]);
+  }
+}
+
+void cutTable(const SqliteDatabase& database, const char* table, std::size_t rows) {
+  database.run(std::string("DELETE FROM ") + table + " WHERE id >= " + std::to_string(rows));
+}
+
+void writeState(const SqliteDatabase& database, const MapUpdate& u) {
+  SqliteStatement row =
+      database.prepare("INSERT OR REPLACE INTO state VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
+  const std::string intrinsics = encodeIntrinsics(u.camera);
+  row.bind(1, std::int64_t{u.frame});
+  row.bind(2, std::int64_t{u.graph_version});
+  row.bind(3, static_cast<double>(u.brightness.gain));
+  row.bind(4, static_cast<double>(u.brightness.offset));
+  row.bind(5, u.settings);
+  row.bind(6, std::int64_t{u.camera.width});
+  row.bind(7, std::int64_t{u.camera.height});
+  row.bind(8, intrinsics);
+  row.run();
+}
+
+void writeBlocks(const SqliteDatabase& database, const MapUpdate& update) {
+  cutTable(database, "blocks", update.block_count);
+  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3)");
+  for (const BlockRecord& block : update.blocks) {
+    const std::string bytes = encode(block.surfels);
+    row.bind(1, std::int64_t{block.index});
+    row.bind(2, bytes);
+    row.bind(3, checksumOf(bytes));
+    row.run();
+  }
+}
+
+void writeKeyframes(const SqliteDatabase& database, const MapUpdate& update,
+                    const std::vector<Keyframe>& written) {
+  cutTable(database, "keyframes", update.keyframes.size());
+  SqliteStatement row =
+      database.prepare("INSERT OR REPLACE INTO keyframes VALUES(?1, ?2, ?3, ?4, ?5)");
+  writeChanged(update.keyframes, written, [&](std::int64_t id, const Keyframe& k) {
+    const std::string pose = encode(k.T_map_camera);
+    row.bind(1, id);
+    row.bind(2, std::int64_t{k.fragment});
+    row.bind(3, k.stamp_ns);
+    row.bind(4, std::int64_t{k.map_frame});
+    row.bind(5, pose);
+    row.run();
+  });
+}
+
+void writeConstraints(const SqliteDatabase& database, const MapUpdate& update,
+                      const std::vector<PoseConstraint>& written) {
+  cutTable(database, "constraints", update.constraints.size());
+  SqliteStatement row =
+      database.prepare("INSERT OR REPLACE INTO constraints VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
+  writeChanged(update.constraints, written, [&](std::int64_t id, const PoseConstraint& c) {
+    const std::string motion = encode(c.T_from_to), covariance = encode(c.covariance);
+    row.bind(1, id);
+    row.bind(2, std::int64_t{c.kind == ConstraintKind::loop ? 1 : 0});
+    row.bind(3, std::int64_t{c.from});
+    row.bind(4, std::int64_t{c.to});
+    row.bind(5, motion);
+    row.bind(6, covariance);
+    row.run();
+  });
+}
+
+void writeImages(const SqliteDatabase& database, const std::vector<KeyframeImages>& images) {
+  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO images VALUES(?1, ?2, ?3)");
+  for (const KeyframeImages& of : images) {
+    const std::string grey = encodePng(of.grey), depth = encodePng(of.depth_mm);
+    row.bind(1, std::int64_t{of.keyframe});
+    row.bind(2, grey);
+    row.bind(3, depth);
+    row.run();
+  }
+}
+
+void writeFrames(const SqliteDatabase& database, const std::vector<FrameRecord>& frames) {
+  std::int64_t next = database.integer("SELECT coalesce(max(id) + 1, 0) FROM frames");
+  SqliteStatement row = database.prepare("INSERT INTO frames VALUES(?1, ?2, ?3, ?4)");
+  for (const FrameRecord& frame : frames) {
+    const std::string pose = encode(frame.pose.T_keyframe_camera);
+    row.bind(1, next++);
+    row.bind(2, frame.stamp_ns);
+    row.bind(3, std::int64_t{frame.pose.keyframe});
+    row.bind(4, pose);
+    row.run();
+  }
+}
+
+void writeBlobs(const SqliteDatabase& database, const std::map<std::string, std::string>& blobs) {
+  SqliteStatement row =
+      database.prepare("INSERT OR REPLACE INTO blobs VALUES(CAST(?1 AS TEXT), ?2)");
+  for (const auto& [name, data] : blobs) {
+    row.bind(1, name);
+    row.bind(2, data);
+    row.run();
+  }
+}
+
+}  // namespace
+
+std::vector<BlockRecord> changedBlocks(const SurfelMap& map, int since_frame) {
+  std::vector<BlockRecord> records;
+  for (std::size_t i = 0; i < map.blocks().size(); ++i) {
+    const SurfelBlock& block = map.blocks()[i];
+    if (block.changed < since_frame) continue;
+    records.push_back({static_cast<std::uint32_t>(i), block.surfels});
+  }
+  return records;
+}
+
+struct MapWriter::State {
+  SqliteDatabase database;
+  std::vector<Keyframe> keyframes;  // as written
+  std::vector<PoseConstraint> constraints;
+};
+
+MapWriter::MapWriter(const std::string& path, Mode mode)
+    : state_(new State{mode == Mode::create ? openNew(path)
+                                            : SqliteDatabase(path, SqliteDatabase::Access::write),
+                       {},
+                       {}}) {
+  if (mode == Mode::extend) checkMapFile(state_->database);
+  setUp(state_->database);
+  if (mode == Mode::create) makeMapTables(state_->database);
+}
+
+MapWriter::~MapWriter() {
+  try {
+    // Into the one file, which then can be read where nothing can be written.
+    state_->database.run("PRAGMA journal_mode=DELETE");
+  } catch (const InputError&) {
+    // The companion file stays and is used when the map is next opened.
+  }
+}
+
+void MapWriter::write(const MapUpdate& update) {
+  const SqliteDatabase& database = state_->database;
+  SqliteTransaction transaction(database);
+  writeState(database, update);
+  writeBlocks(database, update);
+  writeKeyframes(database, update, state_->keyframes);
+  writeConstraints(database, update, state_->constraints);
+  writeImages(database, update.images);
+  writeFrames(database, update.frames);
+  writeBlobs(database, update.blobs);
+  transaction.commit();
+  state_->keyframes = update.keyframes;
+  state_->constraints = update.constraints;
+}
+
+}  // namespace pf

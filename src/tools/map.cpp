@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// posefusion_map: looks into a map file.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <set>
+
+#include "posefusion/config/yaml_map.hpp"
+#include "posefusion/core/stamps.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/images.hpp"
+#include "posefusion/io/map_database.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/ply.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/plan_picture.hpp"
+#include "posefusion/slam/config.hpp"
+
+namespace pf {
+namespace {
+
+std::size_t fragmentsOf(const MapContent& content) {
+  std::set<int> fragments;
+  for (const Keyframe& k : content.keyframes) fragments.insert(k.fragment);
+  return fragments.size();
+}
+
+void printInfo(const std::string& file) {
+  const MapReader reader(file);
+  const MapContent content = reader.content();
+  const MapCounts counts = reader.counts();
+  const auto loops = std::count_if(content.constraints.begin(), content.constraints.end(),
+                                   [](const auto& c) { return c.kind == ConstraintKind::loop; });
+  std::printf("file         %.1f MB\n", 1e-6 * static_cast<double>(counts.bytes));
+  std::printf("camera       %d x %d, fx %.2f fy %.2f cx %.2f cy %.2f\n", content.camera.width,
+              content.camera.height, content.camera.fx, content.camera.fy, content.camera.cx,
+              content.camera.cy);
+  std::printf("frames       %zu with a pose, %d fused\n", content.frames.size(), content.frame + 1);
+  if (!content.frames.empty()) {
+    std::printf("time         %s to %s\n", formatStamp(content.frames.front().stamp_ns).c_str(),
+                formatStamp(content.frames.back().stamp_ns).c_str());
+  }
+  std::printf("surfels      %zu in %zu blocks\n", counts.surfels, counts.blocks);
+  std::printf("keyframes    %zu in %zu fragments, %zu with images\n", content.keyframes.size(),
+              fragmentsOf(content), counts.images);
+  std::printf("constraints  %zu, of them %td loops\n", content.constraints.size(), loops);
+  std::printf("corrections  %d\n", content.graph_version);
+  for (const auto& [name, data] : content.blobs) {
+    std::printf("blob         %s, %zu bytes\n", name.c_str(), data.size());
+  }
+}
+
+/// Reads all there is; whatever is wrong throws.
+void check(const std::string& file) {
+  const MapReader reader(file);
+  const MapContent content = reader.content();
+  const std::size_t surfels = reader.surfels().size();
+  for (const Keyframe& k : content.keyframes) reader.images(k.id);
+  std::printf("%s: whole: %zu surfels, %zu keyframes, %zu frames\n", file.c_str(), surfels,
+              content.keyframes.size(), content.frames.size());
+}
+
+/// The poses of all frames, as the graph has them now, in the order of their stamps.
+Trajectory trajectoryOf(const MapContent& content) {
+  Trajectory trajectory;
+  for (const FrameRecord& frame : content.frames) {
+    const auto keyframe = static_cast<std::size_t>(frame.pose.keyframe);
+    trajectory.push_back(
+        {frame.stamp_ns, content.keyframes[keyframe].T_map_camera * frame.pose.T_keyframe_camera});
+  }
+  std::stable_sort(trajectory.begin(), trajectory.end(),
+                   [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+  return trajectory;
+}
+
+SurfelMap mapOf(const MapReader& reader, const MapContent& content, const std::string& file) {
+  Config config;
+  if (!content.settings.empty()) applyYaml(config, parseYaml(content.settings, file), file);
+  config.map.memory_limit_mb = 1e6;
+  SurfelMap map(config.map);
+  map.restore(reader.surfels(), content.frame);
+  return map;
+}
+
+void exportKeyframes(const MapReader& reader, const MapContent& content,
+                     const std::string& folder) {
+  makeFolder(folder);
+  for (const Keyframe& k : content.keyframes) {
+    const KeyframeImages images = reader.images(k.id);
+    if (images.grey.empty()) continue;
+    const std::string name = folder + "/" + formatStamp(k.stamp_ns);
+    savePng(name + "_grey.png", images.grey);
+    savePng(name + "_depth.png", images.depth_mm);
+  }
+}
+
+void exportAll(const std::string& file, const std::string& folder) {
+  const MapReader reader(file);
+  const MapContent content = reader.content();
+  makeFolder(folder);
+  const std::size_t stable = saveMap(folder + "/map.ply", mapOf(reader, content, file));
+  const Trajectory trajectory = trajectoryOf(content);
+  saveTrajectory(folder + "/trajectory.txt", trajectory, "poses of the camera in the map");
+  exportKeyframes(reader, content, folder + "/keyframes");
+  if (!trajectory.empty()) {
+    Plan plan;
+    plan.surface = loadPoints(folder + "/map.ply");
+    plan.estimate = trajectory;
+    plan.title = std::to_string(stable) + " surfels, " + std::to_string(content.keyframes.size()) +
+                 " keyframes";
+    savePng(folder + "/plan.png", drawPlan(plan));
+  }
+  std::printf("%s: %zu stable surfels, %zu poses, %zu keyframes\n", folder.c_str(), stable,
+              trajectory.size(), content.keyframes.size());
+}
+
+int lookIntoMap(int argc, char** argv) {
+  CLI::App app{"Looks into a map file of posefusion without changing it."};
+  app.require_subcommand(1);
+  std::string file, folder;
+  const auto command = [&](const char* name, const char* help) {
+    CLI::App* added = app.add_subcommand(name, help);
+    added->add_option("file", file, "map file, *.pfdb")->required();
+    return added;
+  };
+  const CLI::App* info = command("info", "prints what is in it");
+  const CLI::App* checking = command("check", "reads all of it; exit code 1 when it is damaged");
+  command("export", "writes map.ply trajectory.txt keyframes/ plan.png")
+      ->add_option("-o,--output", folder, "folder to write into")
+      ->required();
+  CLI11_PARSE(app, argc, argv);
+  if (*info) {
+    printInfo(file);
+  } else if (*checking) {
+    check(file);
+  } else {
+    exportAll(file, folder);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace pf
+
+int main(int argc, char** argv) {
+  try {
+    return pf::lookIntoMap(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "posefusion_map: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// posefusion_map as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "example_map.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace pf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapToolTest : public testing::Test {
+ protected:
+  MapToolTest() {
+    MapWriter(file, MapWriter::Mode::create).write(example.update);
+    before = readFile(file);
+  }
+  ~MapToolTest() override { EXPECT_TRUE(readFile(file) == before); }
+
+  int run(std::vector<std::string> arguments) {
+    const Program program("posefusion_map", std::move(arguments), folder / "log.txt");
+    const int code = program.exitCode();
+    said = program.said();
+    return code;
+  }
+
+  bool hasSaid(const std::string& text) const { return said.find(text) != std::string::npos; }
+
+  const TemporaryFolder folder;
+  const ExampleMap example;
+  const std::string file = folder / "map.pfdb";
+  std::string before, said;
+};
+
+TEST_F(MapToolTest, InfoTellsWhatIsInTheFile) {
+  EXPECT_EQ(run({"info", file}), 0) << said;
+  EXPECT_TRUE(hasSaid("camera       32 x 24, fx 26.00")) << said;
+  EXPECT_TRUE(hasSaid("frames       10 with a pose, 10 fused")) << said;
+  EXPECT_TRUE(hasSaid("surfels      4000 in")) << said;
+  EXPECT_TRUE(hasSaid("keyframes    2 in 1 fragments, 2 with images")) << said;
+  EXPECT_TRUE(hasSaid("constraints  2, of them 1 loops")) << said;
+  EXPECT_TRUE(hasSaid("blob         ferns, 3 bytes")) << said;
+}
+
+TEST_F(MapToolTest, CheckReadsItAll) {
+  EXPECT_EQ(run({"check", file}), 0) << said;
+  EXPECT_TRUE(hasSaid("whole: 4000 surfels, 2 keyframes, 10 frames")) << said;
+  const std::string cut = folder.write("cut.pfdb", before.substr(0, before.size() / 2));
+  EXPECT_EQ(run({"check", cut}), 1);
+  EXPECT_TRUE(hasSaid("posefusion_map: " + cut + ": is damaged")) << said;
+}
+
+TEST_F(MapToolTest, ExportWritesWhatOthersRead) {
+  const std::string out = folder / "out";
+  EXPECT_EQ(run({"export", file, "--output", out}), 0) << said;
+  EXPECT_EQ(loadMap(out + "/map.ply").size(), 4000U);
+  const Trajectory trajectory = loadTrajectory(out + "/trajectory.txt");
+  ASSERT_EQ(trajectory.size(), 10U);
+  const Eigen::Isometry3d expected =
+      example.update.keyframes[1].T_map_camera * example.update.frames[7].pose.T_keyframe_camera;
+  EXPECT_TRUE(trajectory[7].T_world_camera.isApprox(expected, 1e-6));
+  EXPECT_EQ(cv::imread(out + "/plan.png").cols, 1200);
+  EXPECT_EQ(std::distance(fs::directory_iterator(out + "/keyframes"), fs::directory_iterator{}), 4);
+  const cv::Mat depth =
+      cv::imread(out + "/keyframes/1000.000000001_depth.png", cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(depth.type(), CV_16UC1);
+  EXPECT_EQ(depth.at<std::uint16_t>(3, 4), 2001);
+}
+
+TEST_F(MapToolTest, WrongUseIsToldAndChangesNothing) {
+  EXPECT_NE(run({}), 0);
+  EXPECT_NE(run({"export", file}), 0);
+  EXPECT_TRUE(hasSaid("--output")) << said;
+  EXPECT_EQ(run({"info", folder / "none.pfdb"}), 1);
+  EXPECT_TRUE(hasSaid("none.pfdb: cannot be opened")) << said;
+  EXPECT_EQ(run({"info", folder.write("x.ply", "ply\n")}), 1);
+  EXPECT_TRUE(hasSaid("x.ply: is no map of posefusion")) << said;
+}
+
+}  // namespace
+}  // namespace pf

@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/graph/pose_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+using Poses = std::vector<Eigen::Isometry3d>;
+
+const Matrix6d kTracking = 1e-6 * Matrix6d::Identity();
+constexpr int kFramesApart = 10;
+
+Eigen::Isometry3d motion(double x, double y, double z, double yaw, double roll = 0) {
+  Vector6d twist;
+  twist << x, y, z, roll, yaw, 0;
+  return expSe3(twist);
+}
+
+double distance(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return (a.translation() - b.translation()).norm();
+}
+
+double worstDistance(const PoseGraph& graph, const Poses& truth) {
+  double worst = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    worst = std::max(worst, distance(graph.keyframes()[i].T_map_camera, truth[i]));
+  }
+  return worst;
+}
+
+/// Poses as tracked with a drift: each step is the true one and then `drift`.
+Poses drifted(const Poses& truth, const Eigen::Isometry3d& drift) {
+  Poses poses{truth[0]};
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    poses.push_back(poses.back() * truth[i - 1].inverse() * truth[i] * drift);
+  }
+  return poses;
+}
+
+Keyframe keyframeAt(const Eigen::Isometry3d& T, std::size_t i, int fragment = 0) {
+  Keyframe k;
+  k.T_map_camera = T;
+  k.stamp_ns = static_cast<std::int64_t>(i) * 333'000'000;
+  k.map_frame = static_cast<std::int32_t>(i) * kFramesApart;
+  k.fragment = fragment;
+  return k;
+}
+
+void addTo(PoseGraph& graph, const Poses& poses, int fragment = 0) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::size_t at = graph.keyframes().size();
+    const Keyframe keyframe = keyframeAt(poses[i], at, fragment);
+    if (i == 0) {
+      graph.addKeyframe(keyframe);
+    } else {
+      graph.addKeyframe(keyframe, static_cast<int>(at) - 1, kTracking);
+    }
+  }
+}
+
+PoseGraph graphOf(const Poses& poses) {
+  PoseGraph graph((GraphConfig()));
+  addTo(graph, poses);
+  return graph;
+}
+
+PoseConstraint loopOf(const Poses& truth, int from, int to) {
+  PoseConstraint loop;
+  loop.from = from;
+  loop.to = to;
+  loop.T_from_to =
+      truth[static_cast<std::size_t>(from)].inverse() * truth[static_cast<std::size_t>(to)];
+  loop.covariance = 1e-5 * Matrix6d::Identity();
+  return loop;
+}
+
+/// Out and back along a straight corridor, looking ahead and then back.
+Poses corridor() {
+  Poses poses;
+  for (int i = 0; i < 60; ++i) {
+    const bool back = i >= 30;
+    poses.push_back(motion(0, 0, 0.2 * (back ? 59 - i : i), 0) * motion(0, 0, 0, back ? 3.0 : 0));
+  }
+  return poses;
+}
+
+/// Two rounds that cross each other, each of 40 steps.
+Poses figureEight() {
+  Poses poses;
+  for (int i = 0; i <= 80; ++i) {
+    const double t = 2 * M_PI * i / 80;
+    const double heading = std::atan2(2 * std::cos(t), 4 * std::cos(2 * t));
+    poses.push_back(motion(2 * std::sin(t), 0, 2 * std::sin(2 * t), 0) * motion(0, 0, 0, heading));
+  }
+  return poses;
+}
+
+const Eigen::Isometry3d kYawDrift = motion(0, 0, 0.002, 0.004);
+
+void expectUnchanged(const PoseGraph& graph, const PoseGraph& before) {
+  ASSERT_EQ(graph.keyframes().size(), before.keyframes().size());
+  EXPECT_EQ(graph.constraints().size(), before.constraints().size());
+  EXPECT_EQ(graph.version(), before.version());
+  for (std::size_t i = 0; i < graph.keyframes().size(); ++i) {
+    const Keyframe &a = graph.keyframes()[i], &b = before.keyframes()[i];
+    EXPECT_EQ(a.T_map_camera.matrix(), b.T_map_camera.matrix()) << i;
+    EXPECT_EQ(a.fragment, b.fragment) << i;
+  }
+}
+
+TEST(PoseError, ItsAnalyticDerivativesAreTheNumericOnes) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const auto twist = [&](double size) {
+    Vector6d t;
+    for (int i = 0; i < 6; ++i) t[i] = size * normal(random);
+    return t;
+  };
+  constexpr double kStep = 1e-6;
+  for (const double off : {0.0, 1e-4, 0.1, 0.6}) {
+    const Eigen::Isometry3d from = expSe3(twist(1)), to = expSe3(twist(1));
+    const Eigen::Isometry3d measured = from.inverse() * to * expSe3(twist(off));
+    const PoseError error = poseError(from, to, measured);
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d d = kStep * Vector6d::Unit(k);
+      const Vector6d by_from = poseError(from * expSe3(d), to, measured).twist -
+                               poseError(from * expSe3(-d), to, measured).twist;
+      const Vector6d by_to = poseError(from, to * expSe3(d), measured).twist -
+                             poseError(from, to * expSe3(-d), measured).twist;
+      EXPECT_LT((error.by_from.col(k) - by_from / (2 * kStep)).norm(), 1e-7) << off << ' ' << k;
+      EXPECT_LT((error.by_to.col(k) - by_to / (2 * kStep)).norm(), 1e-7) << off << ' ' << k;
+    }
+  }
+}
+
+TEST(PoseError, ChiSquareCountsVariancesInTheLaterCamera) {
+  PoseConstraint c;
+  c.covariance.diagonal() << 0.01, 0.04, 0.01, 0.01, 0.01, 0.01;
+  const Eigen::Isometry3d from = motion(1, 2, 3, 0.5), to = from * motion(0.1, 0.4, 0, 0);
+  EXPECT_NEAR(chiSquare(c, from, to), 1 + 4, 1e-9);
+}
+
+TEST(PoseGraph, StraightensABentCorridor) {
+  const Poses truth = corridor();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  EXPECT_GT(worstDistance(graph, truth), 0.5);
+  graph.addLoop(loopOf(truth, 0, 59));
+  graph.addLoop(loopOf(truth, 15, 44));
+  const GraphResult result = graph.optimise();
+  ASSERT_TRUE(result.accepted) << result.reason;
+  EXPECT_TRUE(result.refused.empty());
+  EXPECT_LT(worstDistance(graph, truth), 0.1);
+  EXPECT_EQ(graph.version(), 1);
+  EXPECT_EQ(result.deformation.version(), 1);
+  ASSERT_EQ(result.errors.size(), 61U);
+  EXPECT_GT(result.errors[59].before, 100);
+  EXPECT_LT(result.errors[59].after, 5);
+  EXPECT_EQ(graph.keyframes()[0].T_map_camera.matrix(), truth[0].matrix());
+}
+
+TEST(PoseGraph, ClosesAFigureEight) {
+  const Poses truth = figureEight();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  EXPECT_GT(distance(graph.keyframes()[40].T_map_camera, truth[40]), 0.15);
+  graph.addLoop(loopOf(truth, 0, 40));
+  ASSERT_TRUE(graph.optimise().accepted);
+  graph.addLoop(loopOf(truth, 0, 80));
+  ASSERT_TRUE(graph.optimise().accepted);
+  EXPECT_LT(distance(graph.keyframes()[40].T_map_camera, truth[40]), 0.02);
+  EXPECT_LT(distance(graph.keyframes()[80].T_map_camera, truth[80]), 0.02);
+  EXPECT_LT(worstDistance(graph, truth), 0.15);
+  EXPECT_EQ(graph.version(), 2);
+}
+
+TEST(PoseGraph, TheDeformationMovesKeyframesAsTheGraphDoes) {
+  const Poses truth = corridor();
+  const PoseGraph before = graphOf(drifted(truth, kYawDrift));
+  PoseGraph graph = before;
+  graph.addLoop(loopOf(truth, 0, 59));
+  const GraphResult result = graph.optimise();
+  ASSERT_TRUE(result.accepted);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Eigen::Isometry3d moved =
+        result.deformation.at(before.keyframes()[i].map_frame) * before.keyframes()[i].T_map_camera;
+    EXPECT_TRUE(moved.isApprox(graph.keyframes()[i].T_map_camera, 1e-9)) << i;
+  }
+  for (int frame = 1; frame < 590; ++frame) {  // no jump anywhere between
+    const Eigen::Isometry3d step =
+        result.deformation.at(frame - 1).inverse() * result.deformation.at(frame);
+    EXPECT_LT(logSe3(step).norm(), 0.02) << frame;
+  }
+}
+
+TEST(PoseGraph, ChangesNothingBeforeALoopAndRigidlyWhatFollowsIt) {
+  const Poses truth = corridor();
+  const PoseGraph before = graphOf(drifted(truth, kYawDrift));
+  PoseGraph graph = before;
+  graph.addLoop(loopOf(truth, 15, 44));
+  ASSERT_TRUE(graph.optimise().accepted);
+  for (std::size_t i = 0; i <= 15; ++i) {
+    EXPECT_EQ(graph.keyframes()[i].T_map_camera.matrix(),
+              before.keyframes()[i].T_map_camera.matrix());
+  }
+  EXPECT_GT(distance(graph.keyframes()[30].T_map_camera, before.keyframes()[30].T_map_camera),
+            0.01);
+  const auto motionFrom44 = [](const PoseGraph& g) {
+    return g.keyframes()[44].T_map_camera.inverse() * g.keyframes()[59].T_map_camera;
+  };
+  EXPECT_TRUE(motionFrom44(graph).isApprox(motionFrom44(before), 1e-6));
+}
+
+TEST(PoseGraph, WithoutNewLoopsNothingHappens) {
+  const PoseGraph before = graphOf(corridor());
+  PoseGraph graph = before;
+  const GraphResult result = graph.optimise();
+  EXPECT_FALSE(result.accepted);
+  EXPECT_TRUE(result.deformation.isIdentity());
+  expectUnchanged(graph, before);
+}
+
+TEST(PoseGraph, RefusesAFalseLoopAndUndoesIt) {
+  const Poses truth = corridor();
+  const PoseGraph before = graphOf(drifted(truth, kYawDrift));
+  for (const auto& wrong : {motion(3, 0, 0, 0), motion(0, 0, 0, 1.5), motion(0, 2.5, 1, -0.5)}) {
+    PoseGraph graph = before;
+    PoseConstraint loop = loopOf(truth, 0, 59);
+    loop.T_from_to = loop.T_from_to * wrong;
+    graph.addLoop(loop);
+    const GraphResult result = graph.optimise();
+    EXPECT_FALSE(result.accepted);
+    ASSERT_EQ(result.refused.size(), 1U);
+    EXPECT_EQ(result.refused[0].constraint.to, 59);
+    EXPECT_EQ(result.refused[0].reason, result.reason);
+    EXPECT_NE(result.reason.find("chi-square"), std::string::npos);
+    EXPECT_TRUE(result.deformation.isIdentity());
+    expectUnchanged(graph, before);
+    EXPECT_FALSE(graph.optimise().accepted) << "it is forgotten";
+  }
+}
+
+TEST(PoseGraph, ASmallFalseLoopIsRefusedWhereTrueOnesHold) {
+  const Poses truth = corridor();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  for (const auto& [a, b] : {std::pair{0, 59}, {10, 49}, {20, 39}})
+    graph.addLoop(loopOf(truth, a, b));
+  ASSERT_TRUE(graph.optimise().accepted);
+  const PoseGraph before = graph;
+  PoseConstraint loop = loopOf(truth, 9, 50);
+  loop.T_from_to = loop.T_from_to * motion(0.3, 0, 0, 0);
+  graph.addLoop(loop);
+  EXPECT_FALSE(graph.optimise().accepted);
+  expectUnchanged(graph, before);
+}
+
+TEST(PoseGraph, KeepsTheTrueLoopsBesideAFalseOne) {
+  const Poses truth = corridor();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  graph.addLoop(loopOf(truth, 0, 59));
+  PoseConstraint wrong = loopOf(truth, 10, 49);
+  wrong.T_from_to = wrong.T_from_to * motion(1.5, 0, 0, 0.4);
+  graph.addLoop(wrong);
+  graph.addLoop(loopOf(truth, 20, 39));
+  const GraphResult result = graph.optimise();
+  ASSERT_TRUE(result.accepted) << result.reason;
+  ASSERT_EQ(result.refused.size(), 1U);
+  EXPECT_EQ(result.refused[0].constraint.from, 10);
+  EXPECT_EQ(graph.constraints().size(), 59U + 2U);
+  EXPECT_LT(worstDistance(graph, truth), 0.1);
+}
+
+TEST(PoseGraph, MovingTheWorldMovesTheAnswer) {
+  const Eigen::Isometry3d world = motion(4, -2, 7, 2.0, 0.7);
+  const Poses truth = figureEight();
+  Poses here = drifted(truth, kYawDrift), there = here;
+  for (auto& T : there) T = world * T;
+  PoseGraph one = graphOf(here), other = graphOf(there);
+  for (PoseGraph* graph : {&one, &other}) {
+    graph->addLoop(loopOf(truth, 0, 80));
+    ASSERT_TRUE(graph->optimise().accepted);
+  }
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_TRUE(
+        other.keyframes()[i].T_map_camera.isApprox(world * one.keyframes()[i].T_map_camera, 1e-6))
+        << i;
+  }
+}
+
+TEST(PoseGraph, IsTheSameToTheBitEachTime) {
+  const Poses truth = figureEight();
+  const auto run = [&] {
+    PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+    for (const auto& [a, b] : {std::pair{0, 80}, {0, 40}, {5, 79}})
+      graph.addLoop(loopOf(truth, a, b));
+    EXPECT_TRUE(graph.optimise().accepted);
+    return graph;
+  };
+  const PoseGraph one = run();
+  for (int i = 0; i < 3; ++i) expectUnchanged(run(), one);
+}
+
+TEST(PoseGraph, PosesOfFramesFollowTheirKeyframe) {
+  const Poses truth = corridor();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  const RelativePose frame{50, motion(0.1, 0.2, 0.3, 0.4)};
+  graph.addLoop(loopOf(truth, 0, 59));
+  ASSERT_TRUE(graph.optimise().accepted);
+  const Eigen::Isometry3d expected = graph.keyframes()[50].T_map_camera * frame.T_keyframe_camera;
+  EXPECT_EQ(graph.poseOf(frame).matrix(), expected.matrix());
+}
+
+/// A corridor in fragment 0, and later another piece of the world in fragment 1, anywhere.
+PoseGraph twoFragments(const Poses& truth) {
+  PoseGraph graph = graphOf(Poses(truth.begin(), truth.begin() + 30));
+  Poses later(truth.begin() + 30, truth.end());
+  for (auto& T : later) T = motion(50, 3, -20, 1.2) * T;
+  addTo(graph, later, 1);
+  return graph;
+}
+
+TEST(PoseGraph, JoinsALaterFragmentRigidly) {
+  const Poses truth = corridor();
+  for (const bool backwards : {false, true}) {
+    PoseGraph graph = twoFragments(truth);
+    const PoseConstraint loop = backwards ? loopOf(truth, 40, 12) : loopOf(truth, 12, 40);
+    const GraphResult result = graph.joinFragment(loop);
+    ASSERT_TRUE(result.accepted) << result.reason;
+    EXPECT_LT(worstDistance(graph, truth), 1e-6);
+    for (const Keyframe& k : graph.keyframes()) EXPECT_EQ(k.fragment, 0);
+    EXPECT_EQ(result.deformation.at(295).matrix(), Eigen::Isometry3d::Identity().matrix())
+        << "what was made before the new fragment began stays";
+    EXPECT_GT(result.deformation.at(300).translation().norm(), 1);
+  }
+}
+
+TEST(PoseGraph, ALoopInOneFragmentLeavesTheOther) {
+  const Poses truth = corridor();
+  PoseGraph graph = twoFragments(truth);
+  const PoseGraph before = graph;
+  PoseConstraint loop = loopOf(truth, 35, 45);
+  loop.T_from_to = loop.T_from_to * motion(0.05, 0, 0, 0);
+  graph.addLoop(loop);
+  ASSERT_TRUE(graph.optimise().accepted);
+  const auto moved = [&](std::size_t i) {
+    return graph.keyframes()[i].T_map_camera.matrix() !=
+           before.keyframes()[i].T_map_camera.matrix();
+  };
+  for (std::size_t i = 0; i <= 35; ++i) EXPECT_FALSE(moved(i)) << i;
+  EXPECT_TRUE(moved(45));
+}
+
+TEST(PoseGraph, ADoubtfulSecondJoinIsRefusedAndUndone) {
+  const Poses truth = corridor();
+  PoseGraph graph = twoFragments(truth);
+  ASSERT_TRUE(graph.joinFragment(loopOf(truth, 12, 40)).accepted);
+  const PoseGraph before = graph;
+  PoseConstraint wrong = loopOf(truth, 14, 38);
+  wrong.T_from_to = wrong.T_from_to * motion(0, 0, 1.0, 0);
+  graph.addLoop(wrong);
+  EXPECT_FALSE(graph.optimise().accepted);
+  expectUnchanged(graph, before);
+}
+
+TEST(PoseGraph, RefusesWhatNoGraphCanHold) {
+  const Poses truth = corridor();
+  PoseGraph graph = twoFragments(truth);
+  const auto refused = [&](const PoseConstraint& loop) {
+    EXPECT_THROW(graph.addLoop(loop), std::invalid_argument);
+  };
+  refused(loopOf(truth, 3, 3));
+  refused(loopOf(truth, 12, 40));  // another fragment
+  PoseConstraint loop = loopOf(truth, 0, 20);
+  loop.to = 60;
+  refused(loop);
+  loop = loopOf(truth, 0, 20);
+  loop.covariance(0, 0) = std::nan("");
+  refused(loop);
+  loop = loopOf(truth, 0, 20);
+  loop.covariance = -Matrix6d::Identity();
+  refused(loop);
+  loop = loopOf(truth, 0, 20);
+  loop.T_from_to.translation().x() = INFINITY;
+  refused(loop);
+  EXPECT_THROW(graph.joinFragment(loopOf(truth, 0, 20)), std::invalid_argument);
+  EXPECT_THROW(graph.addKeyframe(keyframeAt(truth[0], 60), 60, kTracking), std::invalid_argument);
+  EXPECT_EQ(graph.keyframes().size(), 60U);
+}
+
+TEST(PoseGraph, GoesOnFromWhatWasSaved) {
+  const Poses truth = figureEight();
+  PoseGraph graph = graphOf(drifted(truth, kYawDrift));
+  graph.addLoop(loopOf(truth, 0, 40));
+  ASSERT_TRUE(graph.optimise().accepted);
+  PoseGraph restored(graph.config(), graph.keyframes(), graph.constraints(), graph.version());
+  for (PoseGraph* g : {&graph, &restored}) {
+    g->addLoop(loopOf(truth, 0, 80));
+    ASSERT_TRUE(g->optimise().accepted);
+  }
+  expectUnchanged(restored, graph);
+}
+
+TEST(PoseGraph, DoesNotTakeUpABrokenOne) {
+  const PoseGraph graph = graphOf(corridor());
+  auto keyframes = graph.keyframes();
+  auto constraints = graph.constraints();
+  keyframes[4].id = 7;
+  EXPECT_THROW(PoseGraph({}, keyframes, constraints, 0), InputError);
+  keyframes = graph.keyframes();
+  keyframes[4].T_map_camera.linear() *= 1.1;
+  EXPECT_THROW(PoseGraph({}, keyframes, constraints, 0), InputError);
+  keyframes = graph.keyframes();
+  constraints[4].to = 1000;
+  EXPECT_THROW(PoseGraph({}, keyframes, constraints, 0), InputError);
+  EXPECT_THROW(PoseGraph({}, keyframes, graph.constraints(), -1), InputError);
+}
+
+}  // namespace
+}  // namespace pf
