@@ -59,6 +59,32 @@ TEST(Flow, CornersOfOnePosterDoNotKeepTheOtherCellsEmpty) {
   EXPECT_GT(outside, 30);
 }
 
+TEST(Flow, JoinedFlowsLeadOverTheFrameBetween) {
+  FlowTracker tracker;
+  tracker.advance(frameOf(0, 0, 1));
+  const SparseFlow first = tracker.advance(frameOf(7.5, -4.25, 2));
+  const SparseFlow second = tracker.advance(frameOf(12.25, 3.5, 3));
+  const SparseFlow joined = join(first, second);
+  EXPECT_EQ(joined.from_ns, 1);
+  EXPECT_EQ(joined.to_ns, 3);
+  ASSERT_EQ(joined.before.size(), joined.after.size());
+  ASSERT_GT(joined.before.size(), first.before.size() / 2) << "most corners are found again";
+  std::size_t close = 0;
+  for (std::size_t i = 0; i < joined.before.size(); ++i) {
+    const cv::Point2f error = joined.after[i] - joined.before[i] - cv::Point2f(12.25F, 3.5F);
+    close += std::hypot(error.x, error.y) < 0.3 ? 1 : 0;
+  }
+  EXPECT_GE(close, joined.before.size() * 95 / 100);
+}
+
+TEST(Flow, FlowsWithAGapBetweenAreNotJoined) {
+  const SparseFlow first{1, 2, {{10, 10}}, {{11, 10}}}, later{3, 4, {{11, 10}}, {{13, 10}}};
+  EXPECT_EQ(join(first, later).from_ns, 3);
+  EXPECT_EQ(join(first, later).before, later.before);
+  const SparseFlow elsewhere{2, 3, {{50, 50}}, {{52, 50}}};
+  EXPECT_TRUE(join(first, elsewhere).empty()) << "no corner is in both";
+}
+
 TEST(Flow, NothingIsFollowedOverAChangeOfSizeOrAReset) {
   FlowTracker tracker;
   tracker.advance(frameOf(0, 0, 1));
