@@ -45,7 +45,7 @@ SurfelArrays cloud(std::size_t count, float side_m, int seed = 3) {
   return s;
 }
 
-SurfelMap mapOf(const SurfelArrays& surfels, float block_side_m = SurfelMap::kBlockSideM) {
+SurfelMap mapOf(const SurfelArrays& surfels, float block_side_m = SurfelMap::kBlockSide_m) {
   SurfelMap map(MapConfig{}, block_side_m);
   map.advance();
   map.add(surfels);
@@ -126,12 +126,12 @@ TEST(SurfelMap, HoldsEachSurfelOnceWithinTheBoundsOfItsBlock) {
       EXPECT_TRUE(block.bounds.contains(Eigen::Vector3f(s.x[i], s.y[i], s.z[i])));
       EXPECT_LE(s.radius[i], block.largest_radius);
     }
-    EXPECT_LE(block.bounds.diagonal().maxCoeff(), SurfelMap::kBlockSideM * 1.001F);
+    EXPECT_LE(block.bounds.diagonal().maxCoeff(), SurfelMap::kBlockSide_m * 1.001F);
   }
 }
 
 TEST(SurfelMap, BoundsFollowSurfelsThatFusionMoves) {
-  const SurfelMap map = fused(SurfelMap::kBlockSideM, 12);
+  const SurfelMap map = fused(SurfelMap::kBlockSide_m, 12);
   for (const SurfelBlock& block : map.blocks()) {
     const SurfelArrays& s = block.surfels;
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -142,7 +142,7 @@ TEST(SurfelMap, BoundsFollowSurfelsThatFusionMoves) {
 }
 
 TEST(SurfelMap, FusingWithBlocksIsFusingWithout) {
-  const SurfelMap blocks = fused(SurfelMap::kBlockSideM, 20), one = fused(kOneBlock, 20);
+  const SurfelMap blocks = fused(SurfelMap::kBlockSide_m, 20), one = fused(kOneBlock, 20);
   EXPECT_GT(blocks.blocks().size(), 20U);
   EXPECT_LE(one.blocks().size(), 8U) << "one on each side of the axes";
   // The dead are swept up block by block, at different times.
@@ -158,7 +158,7 @@ TEST(SurfelMap, FusionGivesTheSameBitsForAnyNumberOfThreads) {
   SurfelArrays maps[2];
   for (int k = 0; k < 2; ++k) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, k == 0 ? 1 : 2);
-    maps[k] = fused(SurfelMap::kBlockSideM, 15).collect();
+    maps[k] = fused(SurfelMap::kBlockSide_m, 15).collect();
   }
   maps[0].forEachArray(maps[1], [](const auto& a, const auto& b) { EXPECT_TRUE(a == b); });
 }
