@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "device_fixture.hpp"
-#include "stream_publisher.hpp"
+#include "openni2/ros/stream_publisher.hpp"
 
 namespace pf::openni2 {
 namespace {
