@@ -24,9 +24,10 @@ class Report:
         self.rows = []
 
     def row(self, what, value, unit, bar=None, most=True, digits=4):
-        """One figure. `bar`: it must be at most that (or at least, where `most` is false)."""
-        kept = None if bar is None else value <= bar if most else value >= bar
-        self.rows.append((what, f"{value:.{digits}f} {unit}".strip(),
+        """One figure. `bar`: it must be at most that (or at least, where `most` is false). None: there
+        is none (nothing was located, say), and the bar is missed."""
+        kept = None if bar is None else value is not None and (value <= bar if most else value >= bar)
+        self.rows.append((what, "none" if value is None else f"{value:.{digits}f} {unit}".strip(),
                           "" if bar is None else f"{'<=' if most else '>='} {bar:g}", kept))
         self.print_row(self.rows[-1])
 

@@ -146,6 +146,30 @@ TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {
   EXPECT_EQ(mapper.map().size(), surfels);
 }
 
+TEST_F(MapperTest, APersonWhoWasFusedLeavesTheMapWhereTheSegmenterSaysSo) {
+  const cv::Rect person(130, 70, 60, 100);
+  Mapper told(config()), untold(config());
+  RgbdFrame frame = room().frame(0).frame;
+  const RgbdFrame with_person = frame;
+  const auto step = [&](const cv::Mat& in_map_mask) {
+    frame.stamp_ns += 33333333;
+    untold.process({frame, {}, {}});
+    return told.process({frame, {}, {}, false, in_map_mask, with_person.depth}).outcome;
+  };
+  for (int i = 0; i < 15; ++i) ASSERT_EQ(step({}), FrameOutcome::fused);
+  cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
+  mask(person).setTo(255);
+  frame.depth = with_person.depth.clone();
+  frame.depth(person).setTo(0);
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(step(mask), FrameOutcome::fused);
+  const auto mapped = [&](const Mapper& mapper) {
+    return cv::countNonZero(mapper.view().depth_m(person));
+  };
+  EXPECT_GT(mapped(untold), person.area() * 9 / 10) << "no depth is no evidence";
+  EXPECT_LT(mapped(told), person.area() / 10);
+  EXPECT_EQ(step(mask(person)), FrameOutcome::bad_input) << "the mask is not of the frame's size";
+}
+
 TEST_F(MapperTest, NothingToSeeAtFirstIsNoMap) {
   Mapper mapper(config());
   const TrueFrame truth = room().frame(0);

@@ -4,82 +4,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <limits>
-#include <opencv2/core.hpp>
-#include <random>
-#include <set>
-#include <tuple>
 
 #include "posefusion/map/fusion.hpp"
-#include "posefusion/map/render.hpp"
-#include "posefusion/map/visibility.hpp"
-#include "small_camera.hpp"
+#include "surfel_cloud.hpp"
 
 namespace pf {
 namespace {
-
-/// So large that a map is hardly divided.
-constexpr float kOneBlock = 1e4F;
-
-/// Stable discs all over a cube of `side_m`, with random normals.
-SurfelArrays cloud(std::size_t count, float side_m, int seed = 3) {
-  std::mt19937 random(static_cast<unsigned>(seed));
-  std::uniform_real_distribution<float> place(-0.5F * side_m, 0.5F * side_m);
-  std::normal_distribution<float> axis;
-  SurfelArrays s;
-  s.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    s.x[i] = place(random);
-    s.y[i] = place(random);
-    s.z[i] = place(random);
-    const Eigen::Vector3f n =
-        Eigen::Vector3f(axis(random), axis(random), axis(random)).normalized();
-    s.nx[i] = n.x();
-    s.ny[i] = n.y();
-    s.nz[i] = n.z();
-    s.r[i] = s.g[i] = s.b[i] = static_cast<float>(i % 256);
-    s.radius[i] = 0.01F + 0.02F * static_cast<float>(i % 7);
-    s.weight[i] = s.confidence[i] = 50;
-  }
-  return s;
-}
-
-SurfelMap mapOf(const SurfelArrays& surfels, float block_side_m = SurfelMap::kBlockSideM) {
-  SurfelMap map(MapConfig{}, block_side_m);
-  map.advance();
-  map.add(surfels);
-  return map;
-}
-
-Eigen::Isometry3d randomPose(std::mt19937& random, double reach_m) {
-  std::normal_distribution<double> axis;
-  std::uniform_real_distribution<double> place(-reach_m, reach_m);
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::Quaterniond(axis(random), axis(random), axis(random), axis(random))
-                   .normalized()
-                   .toRotationMatrix();
-  T.translation() << place(random), place(random), place(random);
-  return T;
-}
-
-/// A wall with a board before it that comes and goes, noisy, from a camera that moves.
-WorkingFrame noisyFrame(int i) {
-  RgbdFrame frame;
-  frame.camera = smallCamera();
-  frame.color = cv::Mat(120, 160, CV_8UC3, cv::Scalar(90 + i, 90, 90));
-  frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(2.0));
-  if (i % 9 < 6) frame.depth(cv::Rect(60, 40, 40, 40)).setTo(1.3);
-  cv::Mat noise(frame.depth.size(), CV_32FC1);
-  cv::RNG generator(static_cast<std::uint64_t>(i) + 5);
-  generator.fill(noise, cv::RNG::NORMAL, 0.0, 0.004);
-  frame.depth += noise;
-  WorkingFrame working;
-  FrameConfig config;
-  config.shrink = 1;
-  working.assign(frame, cv::Mat(), config);
-  return working;
-}
 
 Eigen::Isometry3d poseOf(int i) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -95,24 +26,6 @@ SurfelMap fused(float block_side_m, int frames) {
   return map;
 }
 
-using Row = std::tuple<float, float, float, float, float, float, float, int, int>;
-
-/// The surfels without their order.
-std::multiset<Row> rowsOf(const SurfelArrays& s) {
-  std::multiset<Row> rows;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    rows.emplace(s.x[i], s.y[i], s.z[i], s.nx[i], s.r[i], s.weight[i], s.confidence[i], s.seen[i],
-                 s.violations[i]);
-  }
-  return rows;
-}
-
-bool equal(const ModelView& a, const ModelView& b) {
-  return cv::norm(a.depth_m, b.depth_m, cv::NORM_INF) == 0 &&
-         cv::norm(a.normal_x, b.normal_x, cv::NORM_INF) == 0 &&
-         cv::norm(a.intensity, b.intensity, cv::NORM_INF) == 0;
-}
-
 TEST(SurfelMap, HoldsEachSurfelOnceWithinTheBoundsOfItsBlock) {
   const SurfelArrays surfels = cloud(5000, 6);
   const SurfelMap map = mapOf(surfels);
@@ -126,12 +39,12 @@ TEST(SurfelMap, HoldsEachSurfelOnceWithinTheBoundsOfItsBlock) {
       EXPECT_TRUE(block.bounds.contains(Eigen::Vector3f(s.x[i], s.y[i], s.z[i])));
       EXPECT_LE(s.radius[i], block.largest_radius);
     }
-    EXPECT_LE(block.bounds.diagonal().maxCoeff(), SurfelMap::kBlockSideM * 1.001F);
+    EXPECT_LE(block.bounds.diagonal().maxCoeff(), SurfelMap::kBlockSide_m * 1.001F);
   }
 }
 
 TEST(SurfelMap, BoundsFollowSurfelsThatFusionMoves) {
-  const SurfelMap map = fused(SurfelMap::kBlockSideM, 12);
+  const SurfelMap map = fused(SurfelMap::kBlockSide_m, 12);
   for (const SurfelBlock& block : map.blocks()) {
     const SurfelArrays& s = block.surfels;
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -142,7 +55,7 @@ TEST(SurfelMap, BoundsFollowSurfelsThatFusionMoves) {
 }
 
 TEST(SurfelMap, FusingWithBlocksIsFusingWithout) {
-  const SurfelMap blocks = fused(SurfelMap::kBlockSideM, 20), one = fused(kOneBlock, 20);
+  const SurfelMap blocks = fused(SurfelMap::kBlockSide_m, 20), one = fused(kOneBlock, 20);
   EXPECT_GT(blocks.blocks().size(), 20U);
   EXPECT_LE(one.blocks().size(), 8U) << "one on each side of the axes";
   // The dead are swept up block by block, at different times.
@@ -158,7 +71,7 @@ TEST(SurfelMap, FusionGivesTheSameBitsForAnyNumberOfThreads) {
   SurfelArrays maps[2];
   for (int k = 0; k < 2; ++k) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, k == 0 ? 1 : 2);
-    maps[k] = fused(SurfelMap::kBlockSideM, 15).collect();
+    maps[k] = fused(SurfelMap::kBlockSide_m, 15).collect();
   }
   maps[0].forEachArray(maps[1], [](const auto& a, const auto& b) { EXPECT_TRUE(a == b); });
 }
@@ -208,58 +121,6 @@ TEST(SurfelMap, PlacesThatAreNoPlacesAreLeftOut) {
   SurfelMap map = mapOf(s);
   EXPECT_EQ(map.size(), 2U);
   EXPECT_EQ(map.refused(), 0U);
-}
-
-TEST(VisibleBlocks, HideNothingThatAPictureOfAllShows) {
-  const SurfelArrays surfels = cloud(20000, 8);
-  const SurfelMap blocks = mapOf(surfels), one = mapOf(surfels, kOneBlock);
-  std::mt19937 random(8);
-  std::size_t named = 0;
-  for (int k = 0; k < 60; ++k) {
-    const Eigen::Isometry3d T = randomPose(random, 5);
-    ModelView a, b;
-    SurfelRenderer().render(blocks, smallCamera(), T, RenderOptions{}, a);
-    SurfelRenderer().render(one, smallCamera(), T, RenderOptions{}, b);
-    EXPECT_TRUE(equal(a, b)) << k;
-    named += visibleBlocks(blocks, smallCamera(), T, 0).size();
-  }
-  EXPECT_LT(named, 60 * blocks.blocks().size() / 4) << "most blocks are out of view";
-}
-
-TEST(VisibleBlocks, KeepWhatLiesWithinTheDepth) {
-  const SurfelArrays surfels = cloud(20000, 8);
-  const SurfelMap map = mapOf(surfels);
-  std::mt19937 random(2);
-  for (int k = 0; k < 20; ++k) {
-    const Eigen::Isometry3d T = randomPose(random, 2);
-    RenderOptions near;
-    near.max_depth_m = 2.0;
-    ModelView a, b;
-    SurfelRenderer().render(map, smallCamera(), T, near, a);
-    SurfelRenderer().render(map, smallCamera(), T, RenderOptions{}, b);
-    // Where the whole map shows something near, the picture of the near blocks shows the same.
-    const cv::Mat within = (b.depth_m > 0) & (b.depth_m < 1.8);
-    EXPECT_EQ(cv::norm(a.depth_m, b.depth_m, cv::NORM_INF, within), 0) << k;
-    EXPECT_LT(visibleBlocks(map, smallCamera(), T, 2.0).size(),
-              visibleBlocks(map, smallCamera(), T, 0).size());
-  }
-}
-
-TEST(VisibleBlocks, WhatIsOutOfViewCostsNothingAndStays) {
-  SurfelMap map(MapConfig{});
-  Fuser fuser;
-  for (int i = 0; i < 12; ++i) fuser.fuse(noisyFrame(0), Eigen::Isometry3d::Identity(), map);
-  const auto before = rowsOf(map.collect());
-  Eigen::Isometry3d away = Eigen::Isometry3d::Identity();
-  away.translation().x() = 50;
-  for (int i = 0; i < 70; ++i) fuser.fuse(noisyFrame(0), away, map);
-  SurfelMap rest = map;
-  rest.removeIf([](const SurfelArrays& s, std::size_t i) { return s.x[i] > 20; });
-  SurfelMap stable = rest;
-  stable.removeIf([&](const SurfelArrays& s, std::size_t i) { return !stable.isStable(s, i); });
-  EXPECT_EQ(rest.size(), stable.size()) << "unstable surfels age out of view too";
-  const auto after = rowsOf(stable.collect());
-  EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
 }
 
 }  // namespace

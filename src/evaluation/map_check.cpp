@@ -9,9 +9,9 @@
 namespace pf {
 namespace {
 
-constexpr double kMinDepthM = 0.1;
-constexpr double kMaxDepthM = 20.0;
-constexpr double kBinM = 1e-4;
+constexpr double kMinDepth_m = 0.1;
+constexpr double kMaxDepth_m = 20.0;
+constexpr double kBin_m = 1e-4;
 constexpr std::size_t kBins = 100'000;  // the last one takes all above
 
 }  // namespace
@@ -23,7 +23,7 @@ void DepthCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
   RenderOptions options;
   options.age = SurfelAge::all;
   renderer_.render(map_, frame.camera, T_map_camera, options, view_);
-  depthInMetres(frame, kMinDepthM, kMaxDepthM, depth_m_);
+  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m_);
   if (!mask.empty()) depth_m_.setTo(0, mask != 0);
   ++frames_;
   for (int v = 0; v < depth_m_.rows; ++v) {
@@ -33,7 +33,7 @@ void DepthCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
       ++measured_;
       if (modelled <= 0) continue;
       ++pixels_;
-      const auto bin = static_cast<std::size_t>(std::abs(measured - modelled) / kBinM);
+      const auto bin = static_cast<std::size_t>(std::abs(measured - modelled) / kBin_m);
       ++histogram_[std::min(bin, kBins - 1)];
     }
   }
@@ -47,7 +47,7 @@ double DepthCheck::medianM() const {
   std::size_t below = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     below += histogram_[bin];
-    if (2 * below >= pixels_ && pixels_ > 0) return (static_cast<double>(bin) + 0.5) * kBinM;
+    if (2 * below >= pixels_ && pixels_ > 0) return (static_cast<double>(bin) + 0.5) * kBin_m;
   }
   return 0.0;
 }
@@ -60,13 +60,13 @@ PeopleCheck::PeopleCheck(const SurfelArrays& surfels, double tolerance_m)
 
 void PeopleCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
                       const Eigen::Isometry3d& T_map_camera) {
-  depthInMetres(frame, kMinDepthM, kMaxDepthM, depth_m_);
+  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m_);
   const Eigen::Isometry3d T_camera_map = T_map_camera.inverse();
   parallelFor(surfels_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d point =
           T_camera_map * Eigen::Vector3d(surfels_.x[i], surfels_.y[i], surfels_.z[i]);
-      if (point.z() < kMinDepthM) continue;
+      if (point.z() < kMinDepth_m) continue;
       const Eigen::Vector2d pixel = frame.camera.project(point);
       const auto u = static_cast<int>(std::lround(pixel.x()));
       const auto v = static_cast<int>(std::lround(pixel.y()));

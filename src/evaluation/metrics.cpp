@@ -15,8 +15,8 @@
 namespace pf {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kMaxTruthDifferenceNs = 20'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kMaxTruthDifference_ns = 20'000'000;
 constexpr double kDegrees = 180.0 / M_PI;
 
 /// Index of the pose nearest in time; the trajectory is sorted and not empty.
@@ -33,7 +33,7 @@ std::size_t nearest(const Trajectory& trajectory, std::int64_t stamp_ns) {
 
 std::optional<Eigen::Isometry3d> truthAt(const Trajectory& truth, std::int64_t stamp_ns) {
   const StampedPose& pose = truth[nearest(truth, stamp_ns)];
-  if (std::llabs(pose.stamp_ns - stamp_ns) > kMaxTruthDifferenceNs) return std::nullopt;
+  if (std::llabs(pose.stamp_ns - stamp_ns) > kMaxTruthDifference_ns) return std::nullopt;
   return pose.T_world_camera;
 }
 
@@ -150,7 +150,7 @@ RelativeError relativeErrorPerFrame(const Trajectory& truth, const Trajectory& e
 RelativeError relativeErrorPerSecond(const Trajectory& truth, const Trajectory& estimate,
                                      double scale) {
   return relativeError(truth, estimate, scale, [&](std::size_t i) {
-    return nearest(estimate, estimate[i].stamp_ns + kSecondNs);
+    return nearest(estimate, estimate[i].stamp_ns + kSecond_ns);
   });
 }
 

@@ -11,9 +11,9 @@
 namespace pf {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kAlignedNs = 5 * kSecondNs;
-constexpr std::int64_t kMaxTruthDifferenceNs = 20'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kAligned_ns = 5 * kSecond_ns;
+constexpr std::int64_t kMaxTruthDifference_ns = 20'000'000;
 constexpr double kDegrees = 180.0 / M_PI;
 
 /// The pose at a time between two poses: positions on a line, rotations at a constant rate.
@@ -32,7 +32,7 @@ std::optional<Eigen::Isometry3d> truthAt(const Trajectory& truth, std::int64_t s
       std::lower_bound(truth.begin(), truth.end(), stamp_ns,
                        [](const StampedPose& p, std::int64_t stamp) { return p.stamp_ns < stamp; });
   const auto isNear = [&](const StampedPose& p) {
-    return std::llabs(p.stamp_ns - stamp_ns) < kMaxTruthDifferenceNs;
+    return std::llabs(p.stamp_ns - stamp_ns) < kMaxTruthDifference_ns;
   };
   const bool has_after = after != truth.end(), has_before = after != truth.begin();
   const bool near = (has_after && isNear(*after)) || (has_before && isNear(*std::prev(after)));
@@ -100,7 +100,7 @@ std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& e
     const auto T = truthAt(truth, stamp_ns);
     if (!T) continue;
     pairs.push_back({{stamp_ns, *T}, estimate[i]});
-    while (from + 1 < pairs.size() && stamp_ns - pairs[from + 1].estimate.stamp_ns >= kSecondNs) {
+    while (from + 1 < pairs.size() && stamp_ns - pairs[from + 1].estimate.stamp_ns >= kSecond_ns) {
       ++from;
     }
     if (movedWrongly(pairs[from], pairs.back())) wrong.push_back(i);
@@ -118,7 +118,7 @@ PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate,
     }
   };
   if (facts.first_fall_ns) takeBefore(*facts.first_fall_ns);
-  if (first.empty() && !pairs.empty()) takeBefore(pairs.front().estimate.stamp_ns + kAlignedNs);
+  if (first.empty() && !pairs.empty()) takeBefore(pairs.front().estimate.stamp_ns + kAligned_ns);
   PlaceErrors errors;
   errors.T_truth_estimate = alignPoses(first);
   errors.count = pairs.size();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kRowGrain = 8;
 constexpr int kRadius = 3;
-constexpr float kSpatialSigmaPx = 2.25F;
+constexpr float kSpatialSigma_px = 2.25F;
 
 /// Pixels whose depths differ by less belong to one surface (a slope of 45 degrees over a few
 /// pixels is still one).
@@ -150,7 +150,7 @@ void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m) {
       for (int du = -kRadius; du <= kRadius; ++du) {
         const int first = std::max(0, -du), last = width - std::max(0, du);
         const float spatial = std::exp(-static_cast<float>(du * du + dv * dv) /
-                                       (2 * kSpatialSigmaPx * kSpatialSigmaPx));
+                                       (2 * kSpatialSigma_px * kSpatialSigma_px));
         addTap(centre + first, row + first + du, inverse_width.data() + first, spatial,
                weight_sum.data() + first, difference_sum.data() + first, last - first);
       }

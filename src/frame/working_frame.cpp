@@ -11,7 +11,7 @@ namespace {
 
 // Depth past the largest used still tells that the space before it is empty, up to here: no sensor
 // of a robot's measures farther indoors, and some report their largest number for "nothing".
-constexpr double kFarthestM = 15.0;
+constexpr double kFarthest_m = 15.0;
 
 /// 255 where no pixel of the block belongs to a person.
 void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
@@ -30,7 +30,7 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   full_camera = frame.camera;
   camera = frame.camera.shrunk(config.shrink);
   const cv::Size size(camera.width, camera.height);
-  depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthestM), full_depth_m);
+  depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthest_m), full_depth_m);
   shrinkDepth(full_depth_m, config.shrink, depth_m);
   cv::threshold(full_depth_m, full_depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
   cv::threshold(depth_m, beyond_m, config.max_depth_m, 0, cv::THRESH_TOZERO);

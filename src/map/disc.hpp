@@ -34,7 +34,7 @@ inline Hit intersect(const Disc& d, float ray_x, float ray_y) {
   const float depth = steep ? d.z : d.offset / cosine;
   const float dx = ray_x * depth - d.x, dy = ray_y * depth - d.y, dz = depth - d.z;
   const float distance = (dx * dx + dy * dy + dz * dz) * d.inverse_radius2;
-  if (distance > 1.0F || depth < kNearM) return {};
+  if (distance > 1.0F || depth < kNear_m) return {};
   return {depth, distance};
 }
 

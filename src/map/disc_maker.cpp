@@ -6,7 +6,7 @@
 namespace pf {
 namespace {
 
-constexpr float kMaxSplatRadiusPx = 12.0F;
+constexpr float kMaxSplatRadius_px = 12.0F;
 constexpr float kAlmostOne = 0.9999F;  // int(x + kAlmostOne) rounds x up
 
 }  // namespace
@@ -42,7 +42,7 @@ std::uint32_t DiscMaker::make(const SurfelRange& range, Disc* discs) const {
 }
 
 bool DiscMaker::cover(const ProjectedRange& seen, std::uint32_t k, Disc& d) const {
-  const float reach = std::min(seen.reach[k], kMaxSplatRadiusPx);
+  const float reach = std::min(seen.reach[k], kMaxSplatRadius_px);
   const float u = seen.u[k], v = seen.v[k];
   // Casts cut towards zero: rounding down, since nothing below zero is left after max().
   const float left = std::max(0.0F, u - reach) + kAlmostOne, right = u + reach;

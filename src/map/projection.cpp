@@ -19,7 +19,7 @@ void projectPositions(const float* __restrict x, const float* __restrict y,
     const float px = r0 * x[i] + r1 * y[i] + r2 * z[i] + t0;
     const float py = r3 * x[i] + r4 * y[i] + r5 * z[i] + t1;
     const float pz = r6 * x[i] + r7 * y[i] + r8 * z[i] + t2;
-    const float inverse_z = 1.0F / (pz > kNearM ? pz : kNearM);
+    const float inverse_z = 1.0F / (pz > kNear_m ? pz : kNear_m);
     const float u = px * inverse_z * fx + cx, v = py * inverse_z * fy + cy;
     const float reach = radius[i] * fx * inverse_z;
     out.x[i] = px;
@@ -28,7 +28,7 @@ void projectPositions(const float* __restrict x, const float* __restrict y,
     out.u[i] = u;
     out.v[i] = v;
     out.reach[i] = reach;
-    const int near_enough = pz >= kNearM, left_of = u - reach<right, below = v + reach> - 0.5F;
+    const int near_enough = pz >= kNear_m, left_of = u - reach<right, below = v + reach> - 0.5F;
     const int right_of = u + reach > -0.5F, above = v - reach < bottom;
     out.inside[i] = near_enough & left_of & right_of & above & below;
   }

@@ -11,7 +11,7 @@
 namespace pf {
 
 /// Surfels nearer to the camera's plane (m) are not looked at.
-constexpr float kNearM = 0.1F;
+constexpr float kNear_m = 0.1F;
 
 /// A pose and a camera in plain floats, for the kernel.
 struct Projection {

@@ -11,7 +11,7 @@ namespace {
 
 // Two layers of one surface, which drift has laid side by side, are parallel and at most this far
 // apart: what is farther is a surface of its own.
-constexpr float kLayerM = 0.10F;
+constexpr float kLayer_m = 0.10F;
 constexpr float kLayerTolerances = 3.0F;
 constexpr float kParallelCosine = 0.9F;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
@@ -77,7 +77,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
   const float off = std::abs(measured - p.z);
-  if (off > std::max(tolerance, kLayerM)) return false;
+  if (off > std::max(tolerance, kLayer_m)) return false;
   const Eigen::Vector3f n = normal(p.u, p.v);
   Eigen::Vector3f own;
   to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], own.x(), own.y(), own.z());

@@ -9,7 +9,7 @@ namespace pf {
 namespace {
 
 // Outside the picture by so much (pixels) still counts as in view: fusion rounds to whole pixels.
-constexpr double kMarginPx = 1.0;
+constexpr double kMargin_px = 1.0;
 
 /// A half space in the map frame: inside where normal . x + offset >= 0 (m).
 struct HalfSpace {
@@ -29,10 +29,10 @@ std::array<HalfSpace, 6> frustumOf(const PinholeCamera& c, const Eigen::Isometry
                                    double max_depth_m) {
   // Each is the side of the picture as a plane through the camera: u >= -margin is
   // fx x + (cx + margin) z >= 0, and so on.
-  const double right = c.width - 1 - c.cx + kMarginPx, bottom = c.height - 1 - c.cy + kMarginPx;
-  const std::array<Eigen::Vector3d, 6> normals = {Eigen::Vector3d(c.fx, 0, c.cx + kMarginPx),
+  const double right = c.width - 1 - c.cx + kMargin_px, bottom = c.height - 1 - c.cy + kMargin_px;
+  const std::array<Eigen::Vector3d, 6> normals = {Eigen::Vector3d(c.fx, 0, c.cx + kMargin_px),
                                                   Eigen::Vector3d(-c.fx, 0, right),
-                                                  Eigen::Vector3d(0, c.fy, c.cy + kMarginPx),
+                                                  Eigen::Vector3d(0, c.fy, c.cy + kMargin_px),
                                                   Eigen::Vector3d(0, -c.fy, bottom),
                                                   Eigen::Vector3d(0, 0, 1),
                                                   Eigen::Vector3d(0, 0, -1)};

@@ -8,6 +8,7 @@
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
+#include "posefusion_ros/flow_chain.hpp"
 #include "posefusion_ros/map_output.hpp"
 #include "posefusion_ros/map_saver.hpp"
 #include "posefusion_ros/names.hpp"
@@ -30,8 +31,8 @@ class FusionNodelet : public ChainNodelet {
  public:
   ~FusionNodelet() override {
     stopWaiting();
-    for (ros::Subscriber* topic :
-         {&rejected_, &info_, &color_, &depth_, &mask_, &flow_, &blur_score_}) {
+    for (ros::Subscriber* topic : {&rejected_, &info_, &color_, &depth_, &mask_, &flow_,
+                                   &blur_score_, &in_map_mask_, &input_depth_}) {
       topic->shutdown();
     }
     save_service_.shutdown();
@@ -45,7 +46,8 @@ class FusionNodelet : public ChainNodelet {
   }
 
  private:
-  using Matcher = ExactMatcher<CameraInfo, Image, Image, Image, SparseFlowMsg, BlurScoreMsg>;
+  using Matcher =
+      ExactMatcher<CameraInfo, Image, Image, Image, SparseFlowMsg, BlurScoreMsg, Image, Image>;
 
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
@@ -74,6 +76,10 @@ class FusionNodelet : public ChainNodelet {
     flow_ = handle.subscribe(topics::kFlow, kInternalQueue, &FusionNodelet::onFlow, this);
     blur_score_ =
         handle.subscribe(topics::kBlurScore, kInternalQueue, &FusionNodelet::onBlurScore, this);
+    in_map_mask_ =
+        handle.subscribe(topics::kInMapMask, kInternalQueue, &FusionNodelet::onInMapMask, this);
+    input_depth_ =
+        handle.subscribe(topics::kSharpDepth, kInternalQueue, &FusionNodelet::onInputDepth, this);
     // Services wait for the worker: in a queue of their own.
     ros::NodeHandle& services = getMTPrivateNodeHandle();
     save_service_ = services.advertiseService("save_map", &FusionNodelet::onSave, this);
@@ -92,10 +98,15 @@ class FusionNodelet : public ChainNodelet {
   void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
   void onMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<3>(image); }
 
-  void onFlow(const SparseFlowMsg::ConstPtr& flow) { matcher_->add<4>(flow); }
+  void onFlow(const SparseFlowMsg::ConstPtr& flow) {
+    flows_.add(flow);
+    matcher_->add<4>(flow);
+  }
   void onBlurScore(const BlurScoreMsg::ConstPtr& score) {
     if (score->sharp) matcher_->add<5>(score);
   }
+  void onInMapMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<6>(image); }
+  void onInputDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<7>(image); }
 
   void onSet(const Matcher::Set& set) {
     if (const auto dropped = worker_->push(set)) {
@@ -121,13 +132,18 @@ class FusionNodelet : public ChainNodelet {
   }
 
   void fuse(const Matcher::Set& set) {
-    const auto& [info, color, depth, mask, flow, blur] = set;
+    const auto& [info, color, depth, mask, flow, blur, in_map, input_depth] = set;
     if (color->header.stamp < last_) startAnew();
     pf::StaticFrame input;
     input.frame = toFrame(color, depth, toCamera(*info, false));
     const cv::Mat people = cv_bridge::toCvShare(mask)->image;
     if (cv::countNonZero(people) > 0) input.mask = people;
-    input.flow = fromMessage(*flow);
+    const cv::Mat people_in_map = cv_bridge::toCvShare(in_map)->image;
+    if (cv::countNonZero(people_in_map) > 0) {
+      input.in_map_mask = people_in_map;
+      input.input_depth = toDepth(input_depth);
+    }
+    input.flow = flows_.take(flow->header.stamp);
     input.forced = blur->forced != 0;
     const FrameStatus status = mapper_->process(input);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
@@ -214,9 +230,11 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<PoseOutput> pose_output_;
   std::mutex status_mutex_;  // guards status_publisher_, which is advertised late
   ros::Publisher status_publisher_;
+  FlowChain flows_{kInternalQueue};
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
-  ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_;
+  ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_, in_map_mask_,
+      input_depth_;
   ros::ServiceServer save_service_, reset_service_;
 };
 

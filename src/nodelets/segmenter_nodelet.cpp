@@ -75,6 +75,7 @@ class SegmenterNodelet : public ChainNodelet {
     picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
     depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
     flow_publisher_ = handle.advertise<SparseFlowMsg>(topics::kFlow, kInternalQueue);
+    in_map_publisher_ = handle.advertise<Image>(topics::kInMapMask, kInternalQueue);
     mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
   }
 
@@ -157,9 +158,13 @@ class SegmenterNodelet : public ChainNodelet {
     depth_publisher_.publish(
         nobody ? depth
                : sensor_msgs::ImageConstPtr(toImage(result.static_depth, depth->encoding, header)));
-    const cv::Mat mask =
-        result.mask.empty() ? cv::Mat(cv::Mat::zeros(frame.depth.size(), CV_8UC1)) : result.mask;
-    mask_publisher_.publish(sensor_msgs::ImageConstPtr(toImage(mask, "mono8", header)));
+    const auto orNobody = [&](const cv::Mat& mask) {
+      const cv::Mat nobody_there = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
+      return sensor_msgs::ImageConstPtr(
+          toImage(mask.empty() ? nobody_there : mask, "mono8", header));
+    };
+    in_map_publisher_.publish(orNobody(result.in_map_mask));
+    mask_publisher_.publish(orNobody(result.mask));
   }
 
   bool lossless_ = false;
@@ -171,7 +176,7 @@ class SegmenterNodelet : public ChainNodelet {
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
   ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
-      flow_publisher_, mask_publisher_;
+      flow_publisher_, in_map_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.

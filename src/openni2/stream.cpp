@@ -11,9 +11,9 @@ namespace pf::openni2 {
 namespace {
 
 /// Device time that steps back by more is a file's next round or a restarted clock.
-constexpr std::int64_t kNewRoundUs = 300'000;
+constexpr std::int64_t kNewRound_us = 300'000;
 /// How soon a reader sees that it shall stop.
-constexpr int kWaitMs = 50;
+constexpr int kWait_ms = 50;
 
 std::int64_t steadyNs() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -101,7 +101,7 @@ void SensorStream::count(std::uint64_t StreamCounters::*counter, std::uint64_t b
 bool SensorStream::isNew(const openni::VideoFrameRef& frame) {
   const auto time_us = static_cast<std::int64_t>(frame.getTimestamp());
   const int index = frame.getFrameIndex();
-  const bool new_round = time_us < last_time_us_ - kNewRoundUs;
+  const bool new_round = time_us < last_time_us_ - kNewRound_us;
   const bool is_new = !any_ || new_round || time_us > last_time_us_;
   if (!is_new) return false;
   if (any_ && !new_round && index > last_index_ + 1) {
@@ -129,13 +129,13 @@ void SensorStream::readFrames() {
   openni::VideoStream* streams[] = {&stream_};
   while (reading_) {
     int ready = -1;
-    const auto status = openni::OpenNI::waitForAnyStream(streams, 1, &ready, kWaitMs);
+    const auto status = openni::OpenNI::waitForAnyStream(streams, 1, &ready, kWait_ms);
     const auto arrival = std::chrono::steady_clock::now();
     openni::VideoFrameRef frame;
     if (status == openni::STATUS_OK && stream_.readFrame(&frame) == openni::STATUS_OK) {
       if (frame.isValid()) take(frame, arrival);
     } else if (status != openni::STATUS_TIME_OUT) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(kWaitMs));  // a broken device
+      std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));  // a broken device
     }
   }
 }

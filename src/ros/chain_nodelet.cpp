@@ -11,8 +11,8 @@ namespace posefusion_ros {
 namespace {
 
 constexpr int kRejectedQueue = 1000;
-constexpr double kReadyPeriodS = 0.05;
-constexpr double kThrottleS = 5.0;
+constexpr double kReadyPeriod_s = 0.05;
+constexpr double kThrottle_s = 5.0;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void ChainNodelet::onInit() {
 void ChainNodelet::reject(const std_msgs::Header& header, std::uint8_t outcome,
                           const std::string& reason) {
   if (outcome != TrackingStatusMsg::BLURRED) {
-    NODELET_WARN_THROTTLE(kThrottleS, "frame %u.%09u not used: %s", header.stamp.sec,
+    NODELET_WARN_THROTTLE(kThrottle_s, "frame %u.%09u not used: %s", header.stamp.sec,
                           header.stamp.nsec, reason.c_str());
   }
   const auto status = boost::make_shared<TrackingStatusMsg>();
@@ -63,7 +63,7 @@ void ChainNodelet::whenReady(std::function<bool()> ready, std::function<void()> 
     ready_timer_.stop();
     action();
   };
-  ready_timer_ = getNodeHandle().createWallTimer(ros::WallDuration(kReadyPeriodS),
+  ready_timer_ = getNodeHandle().createWallTimer(ros::WallDuration(kReadyPeriod_s),
                                                  ros::WallTimerCallback(look));
 }
 

@@ -14,7 +14,7 @@ using pf::People;
 using pf::Person;
 using pf::RgbdFrame;
 
-constexpr double kLineWidthM = 0.03;
+constexpr double kLineWidth_m = 0.03;
 constexpr std::array<std::array<int, 3>, 6> kColors = {
     {{255, 170, 0}, {0, 200, 255}, {120, 255, 0}, {255, 80, 160}, {170, 120, 255}, {255, 255, 0}}};
 
@@ -47,7 +47,7 @@ visualization_msgs::Marker markerOf(const Person& person, std::size_t index, con
   marker.id = static_cast<int>(index);
   marker.type = visualization_msgs::Marker::LINE_LIST;
   marker.pose.orientation.w = 1;
-  marker.scale.x = kLineWidthM;
+  marker.scale.x = kLineWidth_m;
   marker.color.r = static_cast<float>(colorOf(index)[0]) / 255.0F;
   marker.color.g = static_cast<float>(colorOf(index)[1]) / 255.0F;
   marker.color.b = static_cast<float>(colorOf(index)[2]) / 255.0F;

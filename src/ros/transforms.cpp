@@ -11,7 +11,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr double kPollS = 0.002;
+constexpr double kPoll_s = 0.002;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::optional<Eigen::Isometry3d> TransformLookup::find(const std::string& target
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(settings_.timeout_s);
   auto T = look(target, source, stamp, note);
   while (!T && waits && ros::WallTime::now() < end && !ros::isShuttingDown()) {
-    ros::WallDuration(kPollS).sleep();
+    ros::WallDuration(kPoll_s).sleep();
     T = look(target, source, stamp, note);
   }
   waits = settings_.exact && T.has_value();

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kLegend = 104;
 constexpr double kPathWidth = 2;
-constexpr int kFine = 2;                      // drawn so much larger and scaled down: smooth lines
-constexpr std::int64_t kGapNs = 500'000'000;  // the path is broken at longer ones
+constexpr int kFine = 2;                       // drawn so much larger and scaled down: smooth lines
+constexpr std::int64_t kGap_ns = 500'000'000;  // the path is broken at longer ones
 const cv::Scalar kPaper(255, 255, 255), kInk(45, 45, 50), kTruth(30, 30, 30),
     kEstimate(0, 104, 210), kWrong(222, 30, 40);
 
@@ -53,7 +53,7 @@ class Pen {
 void drawPath(const Trajectory& path, const PlanView& view, const cv::Scalar& color, Pen& pen) {
   std::vector<cv::Point2d> points;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (i > 0 && path[i].stamp_ns - path[i - 1].stamp_ns > kGapNs) {
+    if (i > 0 && path[i].stamp_ns - path[i - 1].stamp_ns > kGap_ns) {
       pen.line(points, color, kPathWidth);
       points.clear();
     }

@@ -18,12 +18,12 @@ constexpr float kDiagonal = 0.707F;
 constexpr std::array<Neighbour, 4> kNeighbours{
     {{1, 0, 1.0F}, {0, 1, 1.0F}, {1, 1, kDiagonal}, {-1, 1, kDiagonal}}};
 
-constexpr float kHoleEdge = 0.15F;       // part of the smoothness across missing depth
-constexpr float kColourSpread = 900.0F;  // square of a colour difference that makes an edge cheap
-constexpr float kColourlessEdge = 0.4F;  // part of the smoothness that colour does not touch
-constexpr float kMinReach = 2.5F;        // of the length scale, in spacings of neighbours there
+constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
+constexpr float kColorSpread = 900.0F;  // square of a colour difference that makes an edge cheap
+constexpr float kColorlessEdge = 0.4F;  // part of the smoothness that colour does not touch
+constexpr float kMinReach = 2.5F;       // of the length scale, in spacings of neighbours there
 
-float colourDifference2(const SceneGrid& grid, int a, int b) {
+float colorDifference2(const SceneGrid& grid, int a, int b) {
   const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
   const cv::Vec3b& q = grid.color.ptr<cv::Vec3b>()[b];
   float sum = 0.0F;
@@ -78,8 +78,8 @@ void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const Segmentati
   const float smoothness = static_cast<float>(config.smoothness);
   const float sigma_m = static_cast<float>(config.sigma_m);
   const auto weight = [&](int a, int b) {
-    const float contrast = std::exp(-colourDifference2(grid, a, b) / kColourSpread);
-    const float blended = smoothness * (kColourlessEdge + (1.0F - kColourlessEdge) * contrast);
+    const float contrast = std::exp(-colorDifference2(grid, a, b) / kColorSpread);
+    const float blended = smoothness * (kColorlessEdge + (1.0F - kColorlessEdge) * contrast);
     if (!grid.hasDepth(a) || !grid.hasDepth(b)) return kHoleEdge * blended;
     const float reach_m = std::max(sigma_m, kMinReach * grid.spacing * grid.z[a]);
     return blended * smoothnessCost((grid.point(a) - grid.point(b)).norm(), reach_m);

@@ -12,9 +12,9 @@ constexpr float kOutside = 2.5F;          // farther: surely not
 constexpr float kFarthestInFront = 2.5F;  // a cell before the map counts as no farther than this
 
 // Colour: the logarithm of a ratio of likelihoods, and how histograms are learnt.
-constexpr float kColourLimit = 3.0F;
-constexpr float kColourMemory = 0.3F;       // part of a newer histogram that is taken over
-constexpr float kMinColourSamples = 20.0F;  // cells
+constexpr float kColorLimit = 3.0F;
+constexpr float kColorMemory = 0.3F;       // part of a newer histogram that is taken over
+constexpr float kMinColorSamples = 20.0F;  // cells
 
 // What the map says, in units of `model_weight`.
 constexpr float kNearerThanMap = 1.0F;
@@ -50,10 +50,10 @@ Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerso
 }
 
 /// Updates the colours of every person and returns those of what is around them.
-ColourHistogram learnColours(const Evidence& evidence, const std::vector<int>& bins,
-                             std::vector<TrackedPerson>& people) {
-  ColourHistogram outside;
-  std::vector<ColourHistogram> inside(people.size());
+ColorHistogram learnColors(const Evidence& evidence, const std::vector<int>& bins,
+                           std::vector<TrackedPerson>& people) {
+  ColorHistogram outside;
+  std::vector<ColorHistogram> inside(people.size());
   for (int cell = 0; cell < evidence.grid.size(); ++cell) {
     const float distance = evidence.distance.relative[cell];
     const Background background = backgroundOf(evidence, people, cell);
@@ -69,9 +69,9 @@ ColourHistogram learnColours(const Evidence& evidence, const std::vector<int>& b
   }
   outside.smoothAndNormalise();
   for (std::size_t i = 0; i < people.size(); ++i) {
-    if (inside[i].total() < kMinColourSamples) continue;
+    if (inside[i].total() < kMinColorSamples) continue;
     inside[i].smoothAndNormalise();
-    people[i].colour.blend(inside[i], kColourMemory);
+    people[i].color.blend(inside[i], kColorMemory);
   }
   return outside;
 }
@@ -100,14 +100,14 @@ bool isFlat(const Evidence& evidence, int cell) {
 void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
                    std::vector<TrackedPerson>& people, Unary& unary) {
   const SceneGrid& grid = evidence.grid;
-  const float colour_weight = static_cast<float>(config.colour_weight);
+  const float color_weight = static_cast<float>(config.color_weight);
   const float model_weight = static_cast<float>(config.model_weight);
   std::vector<int> bins(grid.size());
   for (int cell = 0; cell < grid.size(); ++cell) {
     bins[cell] =
-        ColourHistogram::binOf(grid.color.at<cv::Vec3b>(cell / grid.cols, cell % grid.cols));
+        ColorHistogram::binOf(grid.color.at<cv::Vec3b>(cell / grid.cols, cell % grid.cols));
   }
-  const ColourHistogram outside = learnColours(evidence, bins, people);
+  const ColorHistogram outside = learnColors(evidence, bins, people);
   unary.assign(grid.size(), -kCertain);
   for (int cell = 0; cell < grid.size(); ++cell) {
     const int candidate = candidateOf(evidence, cell);
@@ -118,8 +118,8 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
     const float farthest = in_front ? kFarthestInFront : kDistanceLimit;
     float value = 1.0F - std::min(evidence.distance.relative[cell], farthest);
     if (candidate >= 0) {
-      value += colour_weight *
-               logLikelihoodRatio(people[candidate].colour, outside, bins[cell], kColourLimit);
+      value += color_weight *
+               logLikelihoodRatio(people[candidate].color, outside, bins[cell], kColorLimit);
     }
     value += model_weight * modelTerm(background);
     if (isFlat(evidence, cell)) value += kOnPlane;

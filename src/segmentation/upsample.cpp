@@ -15,7 +15,7 @@ constexpr float kPerCell2 = 0.7F;  // badness for each squared cell between pixe
 // Depth: the gap that counts 1, which grows with the depth, and the most that it can count.
 constexpr float kDepthGap_m = 0.015F, kDepthGapPerMetre = 0.01F, kMaxDepthBadness = 30.0F;
 // Colour, where the cell has no depth: the squared difference that counts 1, and the most.
-constexpr float kColourSquare = 1200.0F, kMaxColourBadness = 8.0F;
+constexpr float kColorSquare = 1200.0F, kMaxColorBadness = 8.0F;
 constexpr float kNoDepthBadness = 4.0F;
 constexpr std::size_t kRowsAtOnce = 8;
 
@@ -25,13 +25,13 @@ struct Pixel {
   cv::Vec3b color;
 };
 
-float colourBadness(const cv::Vec3b& a, const cv::Vec3b& b) {
+float colorBadness(const cv::Vec3b& a, const cv::Vec3b& b) {
   float square = 0.0F;
   for (int k = 0; k < 3; ++k) {
     const float difference = static_cast<float>(a[k]) - static_cast<float>(b[k]);
     square += difference * difference;
   }
-  return std::min(square / kColourSquare, kMaxColourBadness);
+  return std::min(square / kColorSquare, kMaxColorBadness);
 }
 
 /// How little a cell says of a pixel.
@@ -42,7 +42,7 @@ float badnessOf(const SceneGrid& grid, int cell, const Pixel& pixel) {
   const float badness = kPerCell2 * (du * du + dv * dv);
   if (pixel.z <= 0.0F) return badness;
   if (!grid.hasDepth(cell)) {
-    return badness + colourBadness(pixel.color, grid.color.at<cv::Vec3b>(row, col)) +
+    return badness + colorBadness(pixel.color, grid.color.at<cv::Vec3b>(row, col)) +
            kNoDepthBadness;
   }
   const float gap = (pixel.z - grid.z[cell]) / (kDepthGap_m + kDepthGapPerMetre * pixel.z);

@@ -35,15 +35,22 @@ struct Mapper::State {
   SurfelRenderer renderer;
   std::int64_t last_stamp_ns = kBeforeAll;
 
-  std::string defect(const RgbdFrame& input) const;
+  std::string defect(const StaticFrame& input) const;
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
-  void fuse(const Location& location);
+  void fuse(const StaticFrame& input, const Location& location);
 };
 
 /// Why the frame cannot follow the ones before; empty when it can.
-std::string Mapper::State::defect(const RgbdFrame& input) const {
+std::string Mapper::State::defect(const StaticFrame& still) const {
+  const RgbdFrame& input = still.frame;
   std::string text = defectOf(input);
+  if (text.empty() && !still.in_map_mask.empty() &&
+      (still.in_map_mask.type() != CV_8UC1 || still.in_map_mask.size() != input.depth.size() ||
+       still.input_depth.type() != input.depth.type() ||
+       still.input_depth.size() != input.depth.size())) {
+    text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
+  }
   if (text.empty() && !view.empty() && input.camera.shrunk(config.frame.shrink) != view.camera) {
     text = "the camera or the image size is not that of the frames before";
   }
@@ -80,13 +87,20 @@ Location Mapper::State::locate(const StaticFrame& input) {
   return nowhere;
 }
 
-void Mapper::State::fuse(const Location& location) {
+void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   // Colors of the map are those of its first exposure.
   const Brightness& b = location.tracking.brightness;
   FusionOptions options;
   options.may_remove_stable = !location.is_recent_return;
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
+  if (!input.in_map_mask.empty()) {
+    options.person_mask = input.in_map_mask;
+    RgbdFrame with_people = input.frame;
+    with_people.depth = input.input_depth;
+    depthInMetres(with_people, config.frame.min_depth_m, config.frame.max_depth_m,
+                  options.input_depth_m);
+  }
   fuser.fuse(frame, location.T_map_camera, map, options);
   renderer.render(map, frame.camera, location.T_map_camera, kViewOptions, view);
   view.stamp_ns = last_stamp_ns;
@@ -99,14 +113,14 @@ Mapper::~Mapper() = default;
 FrameStatus Mapper::process(const StaticFrame& input) {
   State& s = *state_;
   FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
-  status.detail = s.defect(input.frame);
+  status.detail = s.defect(input);
   if (!status.detail.empty()) return status;
   s.last_stamp_ns = input.frame.stamp_ns;
   Stopwatch watch;
   s.frame.assign(input.frame, input.mask, s.config.frame);
   const Location location = s.locate(input);
   status.tracking_ms = watch.lapMs();
-  if (location.outcome == FrameOutcome::fused) s.fuse(location);
+  if (location.outcome == FrameOutcome::fused) s.fuse(input, location);
   status.fusion_ms = watch.lapMs();
   status.state = location.state;
   status.outcome = location.outcome;

@@ -49,6 +49,8 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   StaticFrame still{frame, out.segmentation.mask, out.flow};
   still.frame.depth = out.segmentation.static_depth;
   still.forced = out.seen.blur.forced;
+  still.in_map_mask = out.segmentation.in_map_mask;
+  still.input_depth = frame.depth;
   out.status = mapper_.process(still);
   return out;
 }

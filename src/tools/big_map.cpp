@@ -2,9 +2,7 @@
 // For the bench: what a frame costs in a big map. A recording without people is mapped once; then
 // twice more among copies of that map, few and many. The copies stand behind and beside the camera,
 // as the rest of a building does, so that all three see the same.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,9 +11,9 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/frame/flow.hpp"
-#include "posefusion/io/frame_source.hpp"
 #include "posefusion/map/surfel_map.hpp"
 #include "posefusion/slam/mapper.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -29,21 +27,6 @@ struct Options {
   std::size_t frames = 150, few = 300'000, many = 4'000'000;
   int repeats = 3;
 };
-
-std::vector<RgbdFrame> readFrames(const Options& options) {
-  const auto source = openTumFolder(options.sequence);
-  std::vector<RgbdFrame> frames;
-  while (frames.size() < options.frames) {
-    auto next = source->next();
-    if (!next) break;
-    if (next->defect.empty()) frames.push_back(std::move(next->frame));
-  }
-  if (frames.size() <= kWarmUp) {
-    throw InputError(options.sequence + ": has " + std::to_string(frames.size()) +
-                     " frames, expected more than " + std::to_string(kWarmUp));
-  }
-  return frames;
-}
 
 /// Maps the frames; returns the times (ms) of tracking and fusion of those that were fused.
 std::vector<double> mapFrames(const std::vector<RgbdFrame>& frames, Mapper& mapper) {
@@ -108,7 +91,7 @@ void measure(const std::vector<RgbdFrame>& frames, const SurfelArrays& room, std
 }
 
 int bigMap(const Options& options) {
-  const std::vector<RgbdFrame> frames = readFrames(options);
+  const auto frames = readFrames(options.sequence, kWarmUp + 1, options.frames);
   Mapper alone{Config{}};
   mapFrames(frames, alone);
   const SurfelArrays room = stableOf(alone.map());
@@ -129,9 +112,13 @@ int bigMap(const Options& options) {
   return 0;
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"Time of tracking and fusion among few and among many surfels out of view."};
-  Options options;
+}  // namespace
+}  // namespace pf
+
+int main(int argc, char** argv) {
+  CLI::App app{"Time of tracking and fusion among few and among many surfels out of view.",
+               "posefusion_big_map"};
+  pf::Options options;
   app.add_option("sequence", options.sequence, "TUM folder without people")->required();
   app.add_option("--frames", options.frames, "of the recording")->capture_default_str();
   app.add_option("--few", options.few, "surfels out of view")->capture_default_str();
@@ -139,22 +126,5 @@ int run(int argc, char** argv) {
   app.add_option("--repeats", options.repeats, "measurements of each, in turns")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  return bigMap(options);
-}
-
-}  // namespace
-}  // namespace pf
-
-int main(int argc, char** argv) {
-  try {
-    return pf::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_big_map: " << error.what() << "\n";
-    return 1;
-  }
+  return pf::runTool(app, argc, argv, [&] { return pf::bigMap(options); });
 }

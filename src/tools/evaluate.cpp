@@ -2,9 +2,7 @@
 // How good a trajectory, a run, masks, or reported covariances are.
 #include "evaluate.hpp"
 
-#include <CLI/CLI.hpp>
-#include <exception>
-#include <iostream>
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -65,8 +63,13 @@ CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
   return command;
 }
 
-int evaluate(int argc, char** argv) {
-  CLI::App app{"Errors of an estimated trajectory by the definitions of the TUM benchmark."};
+}  // namespace
+}  // namespace pf
+
+int main(int argc, char** argv) {
+  using namespace pf;
+  CLI::App app{"Errors of an estimated trajectory by the definitions of the TUM benchmark.",
+               "posefusion_evaluate"};
   app.require_subcommand(0, 1);
   TrajectoryQuestion trajectory;
   RunQuestion run;
@@ -75,34 +78,18 @@ int evaluate(int argc, char** argv) {
   const CLI::App* run_command = addRunCommand(app, run);
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
-  try {
-    app.parse(argc, argv);
-    if (app.get_subcommands().empty() && !*estimate) {
+  return runTool(app, argc, argv, [&] {
+    if (*run_command) {
+      evaluateRun(run);
+    } else if (*masks_command) {
+      evaluateMasks(masks.truth, masks.checked, masks.json);
+    } else if (*covariance_command) {
+      evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
+    } else if (*estimate) {
+      evaluateTrajectory(trajectory);
+    } else {
       throw CLI::RequiredError("true and estimated trajectory");
     }
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  if (*run_command) {
-    evaluateRun(run);
-  } else if (*masks_command) {
-    evaluateMasks(masks.truth, masks.checked, masks.json);
-  } else if (*covariance_command) {
-    evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
-  } else {
-    evaluateTrajectory(trajectory);
-  }
-  return 0;
-}
-
-}  // namespace
-}  // namespace pf
-
-int main(int argc, char** argv) {
-  try {
-    return pf::evaluate(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_evaluate: " << error.what() << "\n";
-    return 1;
-  }
+    return 0;
+  });
 }

@@ -31,7 +31,7 @@ using std::chrono::duration;
 using std::chrono::steady_clock;
 
 // In real time the chain may lose a frame without a word; silence then ends the replay.
-constexpr double kQuietS = 5.0;
+constexpr double kQuiet_s = 5.0;
 constexpr int kQueue = 100;
 
 struct FeederSettings {
@@ -107,7 +107,7 @@ class Feeder {
       }
       send(next->frame);
     }
-    const double patience_s = settings_.lossless ? settings_.timeout_s : kQuietS;
+    const double patience_s = settings_.lossless ? settings_.timeout_s : kQuiet_s;
     if (!waitBelow(1, patience_s) && settings_.lossless) fail();
   }
 

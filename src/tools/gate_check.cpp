@@ -3,16 +3,15 @@
 // to and fro at 30 Hz for three seconds, then it changes from one frame to the next for three more.
 #include <algorithm>
 #include <cstddef>
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
-#include "posefusion/core/error.hpp"
-#include "posefusion/io/frame_source.hpp"
 #include "posefusion/slam/pipeline.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -21,18 +20,6 @@ constexpr std::size_t kRate = 30, kBefore = 3 * kRate, kAfter = 3 * kRate, kReco
 constexpr double kNormal = 0.9;  // share of the frames of a second that pass
 
 using Change = std::function<cv::Mat(const cv::Mat&)>;
-
-std::vector<RgbdFrame> firstFrames(const std::string& folder) {
-  const auto source = openTumFolder(folder);
-  std::vector<RgbdFrame> frames;
-  while (frames.size() < kRecorded) {
-    auto next = source->next();
-    if (!next) break;
-    if (next->defect.empty()) frames.push_back(std::move(next->frame));
-  }
-  if (frames.size() < 2) throw InputError(folder + ": fewer than two frames can be read");
-  return frames;
-}
 
 /// Seconds after the change until, for a second, at least kNormal of the frames pass; three if
 /// never.
@@ -74,9 +61,8 @@ cv::Mat dullWall(const cv::Mat& color) {
   return wall;
 }
 
-int gateCheck(int argc, char** argv) {
-  if (argc != 2) throw InputError("expected one argument: a TUM folder");
-  const auto recorded = firstFrames(argv[1]);
+int gateCheck(const std::string& folder) {
+  const auto recorded = readFrames(folder, 2, kRecorded);
   const nlohmann::ordered_json out = {
       {"contrast_halved_s", secondsToNormal(recorded, halveContrast)},
       {"dull_wall_s", secondsToNormal(recorded, dullWall)}};
@@ -88,10 +74,8 @@ int gateCheck(int argc, char** argv) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  try {
-    return pf::gateCheck(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_gate_check: " << error.what() << "\n";
-    return 1;
-  }
+  CLI::App app{"Seconds until the blur gate is used to another scene.", "posefusion_gate_check"};
+  std::string folder;
+  app.add_option("sequence", folder, "TUM folder")->required();
+  return pf::runTool(app, argc, argv, [&] { return pf::gateCheck(folder); });
 }

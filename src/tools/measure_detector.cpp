@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_measure_detector: how many simulated people a pose network finds.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include "simulator/contact_sheet.hpp"
 #include "simulator/scenario.hpp"
 #include "simulator/simulation.hpp"
+#include "tool.hpp"
 
 namespace {
 
@@ -131,7 +131,8 @@ void measureAll(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a pose\n"
-      "network finds 4 joints or more, and the empty frames in which it finds somebody."};
+      "network finds 4 joints or more, and the empty frames in which it finds somebody.",
+      "posefusion_measure_detector"};
   Options o;
   o.config.every_nth_frame = 1;
   app.add_option("scenarios", o.scenarios, "names or scene files")->required();
@@ -142,12 +143,8 @@ int main(int argc, char** argv) {
   app.add_option("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file")
       ->allow_extra_args(false);
   app.add_option("--failures", o.failures_file, "PNG with the first frames that went wrong");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return runTool(app, argc, argv, [&] {
     measureAll(o);
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_measure_detector: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -10,8 +10,8 @@
 namespace pf {
 namespace {
 
-constexpr double kTerminalIntervalMs = 100;
-constexpr double kLineIntervalMs = 5000;
+constexpr double kTerminalInterval_ms = 100;
+constexpr double kLineInterval_ms = 5000;
 constexpr std::size_t kBarWidth = 30;
 
 std::string clockText(double seconds) {
@@ -34,7 +34,7 @@ Progress::~Progress() {
 void Progress::update(std::size_t done) {
   done_ = done;
   elapsed_ms_ += watch_.lapMs();
-  const double interval = terminal_ ? kTerminalIntervalMs : kLineIntervalMs;
+  const double interval = terminal_ ? kTerminalInterval_ms : kLineInterval_ms;
   if (elapsed_ms_ - drawn_ms_ < interval) return;
   drawn_ms_ = elapsed_ms_;
   draw(done, false);

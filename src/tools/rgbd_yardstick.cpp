@@ -3,18 +3,18 @@
 // default settings, frame to frame over a TUM folder. Machines differ in speed; a ratio to this one
 // does less.
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/rgbd.hpp>
+#include <string>
 #include <vector>
 
-#include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/frame_source.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -73,9 +73,8 @@ Walk walk(FrameSource& source) {
   return walk;
 }
 
-int yardstick(int argc, char** argv) {
-  if (argc != 2) throw InputError("expected one argument: a TUM folder");
-  const auto source = openTumFolder(argv[1]);
+int yardstick(const std::string& folder) {
+  const auto source = openTumFolder(folder);
   const Walk found = walk(*source);
   const auto pairs = matchPoses(source->truth(), found.trajectory);
   nlohmann::ordered_json out;
@@ -91,10 +90,8 @@ int yardstick(int argc, char** argv) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  try {
-    return pf::yardstick(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_rgbd_yardstick: " << error.what() << "\n";
-    return 1;
-  }
+  CLI::App app{"Time and path of OpenCV's RgbdICPOdometry.", "posefusion_rgbd_yardstick"};
+  std::string folder;
+  app.add_option("sequence", folder, "TUM folder")->required();
+  return pf::runTool(app, argc, argv, [&] { return pf::yardstick(folder); });
 }

@@ -106,9 +106,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   return failure;
 }
 
-int run(int argc, char** argv) {
-  RunOptions options;
-  if (const auto exit_code = parseRunOptions(argc, argv, options)) return *exit_code;
+int run(const RunOptions& options) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
@@ -135,11 +133,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace pf
 
-int main(int argc, char** argv) {
-  try {
-    return pf::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_run: " << error.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return pf::runWithOptions(argc, argv, pf::run); }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <vector>
+
+#include "posefusion/core/error.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -40,8 +42,10 @@ void addTopicOptions(CLI::App& app, posefusion_ros::InputOptions& reading) {
 
 }  // namespace
 
-std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options) {
-  CLI::App app{"Camera trajectory and dense map without the people, from a recorded sequence."};
+int runWithOptions(int argc, char** argv, const std::function<int(const RunOptions&)>& run) {
+  CLI::App app{"Camera trajectory and dense map without the people, from a recorded sequence.",
+               "posefusion_run"};
+  RunOptions options;
   ConfigOptions config;
   bool print_config = false;
   auto& reading = options.reading;
@@ -66,21 +70,17 @@ std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options) {
   app.add_flag("--check-depth", options.check_depth,
                "compare each frame's depth with the map rendered from its pose (slower)");
   app.add_flag("--print-config", print_config, "print all settings and stop");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  options.config = makeConfig(config);
-  if (print_config) {
-    std::cout << toYaml(options.config);
-    return 0;
-  }
-  if (options.input.empty()) {
-    std::cerr << "INPUT is missing: a TUM folder or a bag (--help tells more)\n";
-    return 1;
-  }
-  return std::nullopt;
+  return runTool(app, argc, argv, [&] {
+    options.config = makeConfig(config);
+    if (print_config) {
+      std::cout << toYaml(options.config);
+      return 0;
+    }
+    if (options.input.empty()) {
+      throw InputError("INPUT is missing: a TUM folder or a bag (--help tells more)");
+    }
+    return run(options);
+  });
 }
 
 }  // namespace pf

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <functional>
 #include <string>
 
 #include "posefusion/slam/config.hpp"
@@ -24,9 +24,9 @@ struct RunOptions {
   Config config;
 };
 
-/// Reads the command line: a file of settings, then the mode, then single options and settings, the
-/// later over the earlier. Returns the exit code where there is nothing to run (help,
-/// --print-config, a wrong option: said on stderr). Throws InputError for a wrong setting.
-std::optional<int> parseRunOptions(int argc, char** argv, RunOptions& options);
+/// Reads the command line (a file of settings, then the mode, then single options and settings, the
+/// later over the earlier) and runs `run` where there is something to run. Returns the exit code of
+/// the program: see runTool().
+int runWithOptions(int argc, char** argv, const std::function<int(const RunOptions&)>& run);
 
 }  // namespace pf

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_simulate: makes a recording of a simulated room with people.
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <filesystem>
 #include <future>
@@ -14,6 +13,7 @@
 #include "simulator/output.hpp"
 #include "simulator/scenario.hpp"
 #include "simulator/simulation.hpp"
+#include "tool.hpp"
 
 namespace {
 
@@ -33,8 +33,7 @@ struct Options {
   ScenarioChanges changes;
 };
 
-Options parseOptions(CLI::App& app, int argc, char** argv) {
-  Options o;
+void addOptions(CLI::App& app, Options& o) {
   app.add_option("scenario", o.scenario, "name (see --list) or scene file (.yaml)");
   app.add_option("-o,--output", o.output, "new TUM folder, or a new bag when it ends in .bag");
   app.add_option("--seed", o.changes.seed, "everything random; same seed, same bytes");
@@ -49,12 +48,6 @@ Options parseOptions(CLI::App& app, int argc, char** argv) {
   app.add_option("--sheet-width", o.sheet_width, "width of a picture of it")
       ->check(CLI::Range(40, 2000));
   app.add_flag("--list", o.list, "names of the scenarios");
-  app.parse(argc, argv);
-  if (!o.list && o.scenario.empty()) throw CLI::RequiredError("scenario");
-  if (!o.list && o.output.empty() && o.sheet.empty()) {
-    throw CLI::RequiredError("--output or --contact-sheet");
-  }
-  return o;
 }
 
 void makeSheet(Simulation& simulation, const Options& o) {
@@ -95,27 +88,27 @@ int record(Simulation& simulation, const Options& o) {
   return 128 + stop_asked;
 }
 
+int simulate(const Options& options) {
+  if (options.list) {
+    for (const auto& name : scenarioNames()) std::cout << name << "\n";
+    return 0;
+  }
+  if (options.scenario.empty()) throw CLI::RequiredError("scenario");
+  if (options.output.empty() && options.sheet.empty()) {
+    throw CLI::RequiredError("--output or --contact-sheet");
+  }
+  Simulation simulation(loadScenario(options.scenario, options.changes));
+  if (!options.sheet.empty()) makeSheet(simulation, options);
+  return options.output.empty() ? 0 : record(simulation, options);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Makes a recording of a simulated room: colour, depth, and the truth of camera and people."};
+      "Makes a recording of a simulated room: colour, depth, and the truth of camera and people.",
+      "posefusion_simulate"};
   Options options;
-  try {
-    options = parseOptions(app, argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  try {
-    if (options.list) {
-      for (const auto& name : scenarioNames()) std::cout << name << "\n";
-      return 0;
-    }
-    Simulation simulation(loadScenario(options.scenario, options.changes));
-    if (!options.sheet.empty()) makeSheet(simulation, options);
-    return options.output.empty() ? 0 : record(simulation, options);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_simulate: " << error.what() << "\n";
-    return 1;
-  }
+  addOptions(app, options);
+  return runTool(app, argc, argv, [&] { return simulate(options); });
 }

@@ -4,7 +4,6 @@
 #include <rosbag/bag.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 
@@ -13,6 +12,7 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/stage_messages.hpp"
+#include "tool.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -114,18 +114,15 @@ int main(int argc, char** argv) {
   int max_frames = 0;
   CLI::App app{
       "Writes a TUM folder as a ROS bag: colour, registered depth, camera_info, recorded people\n"
-      "and true poses, under the names of openni2_launch."};
+      "and true poses, under the names of openni2_launch.",
+      "posefusion_to_bag"};
   app.add_option("tum_folder", input, "the recording")->required();
   app.add_option("bag", out, "new bag; one of that name is replaced")->required();
   app.add_option("--camera", camera_file, "camera of the folder, instead of its camera.yaml");
   app.add_option("--max-frames", max_frames, "stop after so many frames; 0: all")
       ->check(CLI::NonNegativeNumber);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return pf::runTool(app, argc, argv, [&] {
     posefusion_ros::convert(*pf::openTumFolder(input, camera_file), max_frames, out);
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_to_bag: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

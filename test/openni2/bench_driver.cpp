@@ -7,13 +7,13 @@
 #include <cstdio>
 
 #include "device_fixture.hpp"
-#include "stream_publisher.hpp"
+#include "openni2/ros/stream_publisher.hpp"
 
 namespace pf::openni2 {
 namespace {
 
 constexpr std::size_t kFrames = 300;
-constexpr double kLimitMs = 1.0;
+constexpr double kLimit_ms = 1.0;
 
 /// Publishes frames and notes how long that took.
 class TimedPublisher {
@@ -68,7 +68,7 @@ int run() {
     if (!eventually([&] { return color.done() && depth.done(); }, 60000)) return 1;
   }
   const double worst = std::max(color.report("colour 640x480"), depth.report("depth 640x480"));
-  return worst <= kLimitMs ? 0 : 1;
+  return worst <= kLimit_ms ? 0 : 1;
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 // What becomes of a map: saved, emptied, begun anew.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
 #include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
 #include "posefusion/io/trajectory_file.hpp"
@@ -9,102 +13,97 @@
 namespace posefusion_ros {
 namespace {
 
-using pf::SimulatedSequence;
+/// A chain that saves, and a camera in an empty room.
+class ChainSaving : public testing::Test {
+ protected:
+  void load(const std::string& space, const std::string& output) {
+    chain.emplace(space);
+    chain->set("output", output);
+    ASSERT_TRUE(chain->load());
+  }
 
-TEST(Chain, ResetEmptiesTheMapAndSaveTellsWhere) {
+  /// Sends a frame of the room and waits for its status.
+  TrackingStatusMsg process(int index, std::int64_t later_s = 0) {
+    pf::RgbdFrame frame = emptyRoom().frame(index).frame;
+    frame.stamp_ns += later_s * 1000000000L;
+    return chain->process(toMessages(frame));
+  }
+
+  /// Plays three frames, then three that are 50 s earlier; all of them are to be fused.
+  void playWithAJumpBack() {
+    for (const int later_s : {100, 50}) {
+      for (int i = 0; i < 3; ++i) {
+        const auto status = process(i, later_s);
+        EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED)
+            << later_s << " " << i << status.reason;
+        EXPECT_EQ(toNs(status.header.stamp), emptyRoom().stamp(i) + later_s * 1000000000L);
+      }
+    }
+  }
+
   const pf::TemporaryFolder folder;
-  Chain chain("services");
-  chain.set("output", folder / "out");
-  ASSERT_TRUE(chain.load());
-  const SimulatedSequence& sequence = emptyRoom();
-  const auto empty = chain.call("save_map");
+  std::optional<Chain> chain;
+};
+
+TEST_F(ChainSaving, ResetEmptiesTheMapAndSaveTellsWhere) {
+  load("services", folder / "out");
+  const auto empty = chain->call("save_map");
   EXPECT_TRUE(empty.success);
   EXPECT_NE(empty.message.find("nothing to save"), std::string::npos);
   std::uint64_t grown = 0;
-  for (int i = 0; i < 3; ++i) grown = chain.process(toMessages(sequence.frame(i).frame)).surfels;
+  for (int i = 0; i < 3; ++i) grown = process(i).surfels;
   EXPECT_GT(grown, 0U);
-  const auto saved = chain.call("save_map");
+  const auto saved = chain->call("save_map");
   EXPECT_TRUE(saved.success);
   EXPECT_NE(saved.message.find(folder / "out"), std::string::npos) << saved.message;
   EXPECT_TRUE(std::filesystem::exists(folder / "out/map.ply"));
-  EXPECT_TRUE(chain.call("reset").success);
-  EXPECT_TRUE(chain.call("reset").success);
-  const auto again = chain.process(toMessages(sequence.frame(3).frame));
+  EXPECT_TRUE(chain->call("reset").success);
+  EXPECT_TRUE(chain->call("reset").success);
+  const auto again = process(3);
   EXPECT_EQ(outcome(again), TrackingStatusMsg::FUSED);
   EXPECT_NEAR(again.pose.position.x, 0, 1e-9) << "a new map begins";
-  chain.unload();
+  chain->unload();
   EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 1U)
       << "the new map was saved at the end";
 }
 
-TEST(Chain, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
-  const pf::TemporaryFolder folder;
+TEST_F(ChainSaving, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
   std::ofstream(folder / "file") << "in the way";
-  Chain chain("unwritable");
-  chain.set("output", folder / "file");
-  ASSERT_TRUE(chain.load());
-  const SimulatedSequence& sequence = emptyRoom();
-  chain.process(toMessages(sequence.frame(0).frame));
-  const auto response = chain.call("save_map");
+  load("unwritable", folder / "file");
+  process(0);
+  const auto response = chain->call("save_map");
   EXPECT_FALSE(response.success);
   EXPECT_NE(response.message.find(folder / "file"), std::string::npos) << response.message;
-  EXPECT_EQ(outcome(chain.process(toMessages(sequence.frame(1).frame))), TrackingStatusMsg::FUSED);
-  chain.unload();
+  EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::FUSED);
+  chain->unload();
 }
 
-TEST(Chain, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
-  const pf::TemporaryFolder folder;
-  Chain chain("jump");
-  chain.set("output", folder.str());
-  ASSERT_TRUE(chain.load());
-  const SimulatedSequence& sequence = emptyRoom();
-  for (int round = 0; round < 2; ++round) {
-    for (int i = 0; i < 3; ++i) {
-      pf::RgbdFrame frame = sequence.frame(i).frame;
-      frame.stamp_ns += (round == 0 ? 100 : 50) * 1000000000L;
-      const auto status = chain.process(toMessages(frame));
-      EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << round << " " << i;
-      EXPECT_EQ(toNs(status.header.stamp), frame.stamp_ns);
-    }
-  }
-  ASSERT_TRUE(chain.call("save_map").success);
+TEST_F(ChainSaving, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
+  load("jump", folder.str());
+  playWithAJumpBack();
+  ASSERT_TRUE(chain->call("save_map").success);
   EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 5), "1050.");
   EXPECT_EQ(posesIn(folder / "before_reset_1/trajectory.txt").substr(0, 5), "1100.");
-  chain.unload();
+  chain->unload();
 }
 
-TEST(Chain, ATimeJumpBeginsANewMapEvenWhereTheOldOneCannotBeKept) {
-  const pf::TemporaryFolder folder;
+TEST_F(ChainSaving, ATimeJumpBeginsANewMapEvenWhereTheOldOneCannotBeKept) {
   std::ofstream(folder / "before_reset_1") << "in the way of the folder";
-  Chain chain("jump_unsaved");
-  chain.set("output", folder.str());
-  ASSERT_TRUE(chain.load());
-  const SimulatedSequence& sequence = emptyRoom();
-  for (int round = 0; round < 2; ++round) {
-    for (int i = 0; i < 3; ++i) {
-      pf::RgbdFrame frame = sequence.frame(i).frame;
-      frame.stamp_ns += (round == 0 ? 100 : 50) * 1000000000L;
-      const auto status = chain.process(toMessages(frame));
-      EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << round << " " << i << status.reason;
-    }
-  }
-  chain.unload();
+  load("jump_unsaved", folder.str());
+  playWithAJumpBack();
+  chain->unload();
   EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 5), "1050.");
   EXPECT_EQ(posesIn(folder / "trajectory.partial.txt.old").substr(0, 5), "1100.")
       << "at least the poses of the old map are kept";
 }
 
-TEST(Chain, PosesAreOnTheDiskAsTheyCome) {
-  const pf::TemporaryFolder folder;
-  Chain chain("journal");
-  chain.set("output", folder / "out");
-  ASSERT_TRUE(chain.load());
-  const SimulatedSequence& sequence = emptyRoom();
+TEST_F(ChainSaving, PosesAreOnTheDiskAsTheyCome) {
+  load("journal", folder / "out");
   for (int i = 0; i < 3; ++i) {
-    chain.process(toMessages(sequence.frame(i).frame));
+    process(i);
     EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.partial.txt").size(), i + 1U);
   }
-  chain.unload();
+  chain->unload();
   EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 3U);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/trajectory.partial.txt"));
 }

@@ -33,9 +33,9 @@ class SurfelMap {
  public:
   /// Side of a block (m): about 5,000 surfels of a surface seen at 2 m with half resolution. Much
   /// smaller ones cost more to visit than they save, larger ones reach too far out of view.
-  static constexpr float kBlockSideM = 0.5F;
+  static constexpr float kBlockSide_m = 0.5F;
 
-  explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSideM)
+  explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSide_m)
       : config_(config), block_side_m_(block_side_m) {}
 
   const MapConfig& config() const { return config_; }

@@ -10,7 +10,7 @@
 namespace pf {
 
 /// Frequencies of colours, 8 x 8 x 8 bins of R G B, smoothed.
-class ColourHistogram {
+class ColorHistogram {
  public:
   static constexpr int kBins = 512;
   static int binOf(const cv::Vec3b& color) {
@@ -22,7 +22,7 @@ class ColourHistogram {
   /// Spreads counts over neighbouring bins (noise, shading) and makes them sum to 1.
   void smoothAndNormalise();
   /// Moves towards another normalised histogram by `part` of the way (0..1).
-  void blend(const ColourHistogram& newer, float part);
+  void blend(const ColorHistogram& newer, float part);
 
   float total() const { return total_; }
   float probability(int bin) const { return count_[bin]; }
@@ -34,7 +34,7 @@ class ColourHistogram {
 
 /// Logarithm of the ratio of probabilities, limited to +-limit; a floor keeps unseen colours
 /// neutral.
-float logLikelihoodRatio(const ColourHistogram& inside, const ColourHistogram& outside, int bin,
+float logLikelihoodRatio(const ColorHistogram& inside, const ColorHistogram& outside, int bin,
                          float limit);
 
 }  // namespace pf

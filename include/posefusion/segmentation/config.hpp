@@ -16,7 +16,7 @@ struct SegmentationConfig {
   int grid_width = 160;
   double sigma_m = 0.05;
   double smoothness = 6.0;
-  double colour_weight = 1.0;
+  double color_weight = 1.0;
   double model_weight = 2.5;
   int carry_frames = 30;
   int margin_px = 3;
@@ -32,7 +32,7 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
   v.integer("grid_width", c.grid_width, 16, 640, "columns of the grid that is cut");
   v.number("sigma_m", c.sigma_m, 1e-3, 10.0, "length scale of the smoothness cost");
   v.number("smoothness", c.smoothness, 0.0, 1e3, "weight of the smoothness cost");
-  v.number("colour_weight", c.colour_weight, 0.0, 1e3, "weight of the colour likelihood");
+  v.number("color_weight", c.color_weight, 0.0, 1e3, "weight of the colour likelihood");
   v.number("model_weight", c.model_weight, 0.0, 1e3,
            "weight of the agreement with the rendered map");
   v.integer("carry_frames", c.carry_frames, 0, 10000,

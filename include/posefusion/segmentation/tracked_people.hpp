@@ -19,7 +19,7 @@ struct TrackedPerson {
   bool in_map = false;     ///< the map holds the person by mistake: what it says there is not used
   float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
   std::vector<int> cells;  ///< the mask, as cells of the grid, moved to the newest frame
-  ColourHistogram colour;  ///< of the person; total() is 0 while nothing is known
+  ColorHistogram color;    ///< of the person; total() is 0 while nothing is known
   Body body;               ///< the joints in space, in the newest frame
 };
 

@@ -21,6 +21,11 @@ struct StaticFrame {
   cv::Mat mask;         ///< CV_8UC1, 255 = the color is a person's; may be empty
   SparseFlow flow;      ///< corners followed from the sharp frame before
   bool forced = false;  ///< passed the blur gate by force: located at best, not fused
+
+  /// CV_8UC1, 255 = a surface of the map that is a person's, fused by mistake; may be empty.
+  cv::Mat in_map_mask{};
+  /// Where there is such a mask: the depth before people were taken out, type of `frame.depth`.
+  cv::Mat input_depth{};
 };
 
 /// Owns the map: finds each static frame in it (Localiser) and fuses those that are believed. Not

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tool.hpp"
+
+#include <exception>
+#include <iostream>
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/frame_source.hpp"
+
+namespace pf {
+
+int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+  try {
+    app.parse(argc, argv);
+    return work();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const std::exception& error) {
+    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    return 1;
+  }
+}
+
+std::vector<RgbdFrame> readFrames(const std::string& folder, std::size_t fewest, std::size_t most) {
+  const auto source = openTumFolder(folder);
+  std::vector<RgbdFrame> frames;
+  while (frames.size() < most) {
+    auto next = source->next();
+    if (!next) break;
+    if (next->defect.empty()) frames.push_back(std::move(next->frame));
+  }
+  if (frames.size() < fewest) {
+    throw InputError(folder + ": has " + std::to_string(frames.size()) +
+                     " frames that can be read, expected " + std::to_string(fewest) + " or more");
+  }
+  return frames;
+}
+
+}  // namespace pf

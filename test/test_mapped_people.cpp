@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/mapped_people.hpp"
+
+#include <gtest/gtest.h>
+
+#include "segmenter_scene.hpp"
+
+namespace pf {
+namespace {
+
+TEST(MappedPeople, WhatTheMapHasIsNobody) {
+  // A weak detection on a wall that the map knows well.
+  Scene scene;
+  scene.frame.depth = scene.room.depth_m;
+  scene.people.people[0].score = 0.45F;
+  SegmenterChain segmenter;
+  const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
+  EXPECT_TRUE(result.mask.empty());
+  // A sure one wins, for somebody may have been missed and mapped.
+  Scene mapped;
+  mapped.room.depth_m = mapped.frame.depth;
+  EXPECT_GT(iou(segmenter.segment(mapped.frame, mapped.people, &mapped.room).mask, mapped.truth),
+            0.85);
+}
+
+TEST(MappedPeople, TellsWhereTheMapHoldsAPerson) {
+  // Somebody stood still, was missed and mapped; behind is the wall, or nothing within reach.
+  for (const float wall_z : {3.0F, 0.0F}) {
+    Scene scene(2.0F, 320, wall_z);
+    makeRound(scene, 320);
+    scene.room.depth_m = scene.frame.depth;
+    const Segmentation result = SegmenterChain().segment(scene.frame, scene.people, &scene.room);
+    ASSERT_FALSE(result.in_map_mask.empty()) << wall_z;
+    EXPECT_EQ(result.in_map_mask.type(), CV_8UC1);
+    EXPECT_GT(iou(result.in_map_mask, scene.truth), 0.8) << wall_z;
+    EXPECT_EQ(cv::countNonZero(result.in_map_mask & ~result.mask), 0);
+  }
+  // Surfaces of a few frames only.
+  Scene young;
+  makeRound(young, 320);
+  young.room.depth_m = young.frame.depth;
+  young.room.stable = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
+  const Segmentation result = SegmenterChain().segment(young.frame, young.people, &young.room);
+  EXPECT_GT(iou(result.in_map_mask, young.truth), 0.8);
+}
+
+TEST(MappedPeople, NothingOfTheMapIsAPersonsWithoutASureDetection) {
+  Scene scene;
+  EXPECT_TRUE(SegmenterChain().segment(scene.frame, scene.people, nullptr).in_map_mask.empty());
+  EXPECT_TRUE(SegmenterChain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+  scene.room.depth_m = scene.frame.depth;
+  scene.people.people[0].score = 0.45F;
+  EXPECT_TRUE(SegmenterChain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+  scene.people.people.clear();
+  EXPECT_TRUE(SegmenterChain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
+}
+
+}  // namespace
+}  // namespace pf

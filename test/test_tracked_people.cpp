@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/tracked_people.hpp"
+
+#include <gtest/gtest.h>
+
+#include "segmenter_scene.hpp"
+
+namespace pf {
+namespace {
+
+TEST(TrackedPeople, CarriesPeopleWhoWalkUnseen) {
+  SegmenterChain segmenter;
+  for (int i = 0; i < 20; ++i) {
+    Scene scene(2.0F, 250 + 5 * i);
+    cv::Mat noise(480, 640, CV_8UC3);
+    cv::theRNG().state = 7;  // texture that moves with the figure, for the flow
+    cv::randu(noise, 0, 60);
+    cv::Mat moved(480, 640, CV_8UC3, cv::Scalar(0, 0, 0));
+    noise(cv::Rect(0, 0, 640 - 5 * i, 480)).copyTo(moved(cv::Rect(5 * i, 0, 640 - 5 * i, 480)));
+    cv::Mat textured = scene.frame.color + moved;
+    textured.copyTo(scene.frame.color, scene.truth);
+    scene.frame.stamp_ns = 1 + i * 33333333LL;
+    if (i > 0) scene.people = {scene.frame.stamp_ns, false, {}};
+    const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
+    ASSERT_FALSE(result.mask.empty()) << i;
+    EXPECT_GT(iou(result.mask, scene.truth), 0.85) << i;
+  }
+}
+
+TEST(TrackedPeople, ForgetsWhoIsGone) {
+  SegmenterChain segmenter;
+  Scene scene;
+  segmenter.segment(scene.frame, scene.people, &scene.room);
+  scene.frame.depth = scene.room.depth_m;
+  scene.frame.color.setTo(cv::Scalar(200, 190, 170));
+  const Segmentation result = segmenter.segment(scene.frame, {2, false, {}}, &scene.room);
+  EXPECT_TRUE(result.mask.empty() || cv::countNonZero(result.mask) < 300);
+}
+
+TEST(TrackedPeople, ForgetsCarriedPeopleWhenTheImageSizeChanges) {
+  for (const cv::Size size : {cv::Size(640, 240), cv::Size(80, 60), cv::Size(1280, 960)}) {
+    SegmenterChain segmenter;
+    Scene scene;
+    segmenter.segment(scene.frame, scene.people, &scene.room);
+    RgbdFrame other = scene.frame;
+    const double scale = size.width / 640.0;
+    other.camera = {size.width,       size.height,       525 * scale, 525 * scale,
+                    0.5 * size.width, 0.5 * size.height, {}};
+    cv::resize(scene.frame.color, other.color, size, 0, 0, cv::INTER_NEAREST);
+    cv::resize(scene.frame.depth, other.depth, size, 0, 0, cv::INTER_NEAREST);
+    other.stamp_ns = 2;
+    const Segmentation result = segmenter.segment(other, {2, false, {}}, nullptr);
+    EXPECT_TRUE(result.people.people.empty()) << size;
+    EXPECT_TRUE(result.mask.empty()) << size;
+    // And people are found as ever in the size before.
+    scene.frame.stamp_ns = 3;
+    EXPECT_GT(iou(segmenter.segment(scene.frame, scene.people, &scene.room).mask, scene.truth),
+              0.93);
+  }
+}
+
+TEST(TrackedPeople, WithoutAMapFurnitureIsNotMaskedForLong) {
+  // A person is known; then the camera is lost and looks at an armchair of the same colour.
+  SegmenterChain segmenter;
+  Scene scene;
+  segmenter.segment(scene.frame, scene.people, &scene.room);
+  Scene armchair;
+  cv::Mat& chair = armchair.truth;
+  cv::rectangle(chair, {210, 130}, {430, 479}, cv::Scalar(255), cv::FILLED);
+  armchair.frame.depth.setTo(2.0F, chair);
+  armchair.frame.color.setTo(cv::Scalar(30, 60, 120), chair);
+  makeRound(armchair, 320);
+  int masked_frames = 0;
+  for (int i = 0; i < 30; ++i) {
+    armchair.frame.stamp_ns = 2 + i;
+    const Segmentation result =
+        segmenter.segment(armchair.frame, {armchair.frame.stamp_ns, false, {}}, nullptr);
+    masked_frames += !result.mask.empty() && cv::countNonZero(result.mask) > 0;
+  }
+  EXPECT_LE(masked_frames, 10);
+}
+
+TEST(TrackedPeople, WithoutAMapNobodyIsSeenWhereNobodyWas) {
+  SegmenterChain segmenter;
+  Scene scene;
+  scene.frame.depth.setTo(1.5F);  // as a table before the lens
+  for (int i = 0; i < 3; ++i) {
+    scene.frame.stamp_ns = 1 + i;
+    const Segmentation result = segmenter.segment(scene.frame, {1 + i, true, {}}, nullptr);
+    EXPECT_TRUE(result.mask.empty());
+    EXPECT_EQ(result.static_depth.data, scene.frame.depth.data);
+  }
+}
+
+TEST(TrackedPeople, ResetForgets) {
+  const Scene scene;
+  SegmenterChain segmenter;
+  segmenter.segment(scene.frame, scene.people, nullptr);
+  segmenter.reset();
+  EXPECT_TRUE(segmenter.segment(scene.frame, {2, false, {}}, nullptr).mask.empty());
+}
+
+}  // namespace
+}  // namespace pf
