@@ -5,7 +5,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
-#include <tuple>
 
 namespace pf {
 namespace {
@@ -21,9 +20,6 @@ constexpr int kCornersPerCell = 4;
 constexpr double kCellQuality = 0.1;  // part of the cell's best corner's strength
 constexpr double kCornerSpacing_px = 7.0;
 constexpr float kMaxReturnError_px = 0.7F;  // forth and back
-// Between a corner's place and that of the corner found anew, in pixels of the full image: LK is
-// good to a fraction of one, the corner detector to about one of the half-size image.
-constexpr double kJoinReach_px = 4.0;
 const cv::Size kWindow(13, 13);
 constexpr int kFlattened_px = 31;        // brightness counts against its mean over such a square
 constexpr std::size_t kFewFollowed = 3;  // one in so many: the search begins anew elsewhere
@@ -50,26 +46,6 @@ void follow(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
 }
 
 }  // namespace
-
-SparseFlow join(const SparseFlow& first, const SparseFlow& second) {
-  if (first.to_ns != second.from_ns) return second;
-  SparseFlow joined;
-  joined.from_ns = first.from_ns;
-  joined.to_ns = second.to_ns;
-  for (std::size_t i = 0; i < first.after.size(); ++i) {
-    const cv::Point2f& there = first.after[i];
-    std::size_t nearest = 0;
-    double gap_px = kJoinReach_px;
-    for (std::size_t k = 0; k < second.before.size(); ++k) {
-      const double apart_px = cv::norm(second.before[k] - there);
-      if (apart_px < gap_px) std::tie(gap_px, nearest) = std::make_tuple(apart_px, k);
-    }
-    if (gap_px >= kJoinReach_px) continue;
-    joined.before.push_back(first.before[i]);
-    joined.after.push_back(there + second.after[nearest] - second.before[nearest]);
-  }
-  return joined;
-}
 
 const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
   last_.swap(newest_);

@@ -8,7 +8,6 @@
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
-#include "posefusion_ros/flow_chain.hpp"
 #include "posefusion_ros/map_output.hpp"
 #include "posefusion_ros/map_saver.hpp"
 #include "posefusion_ros/names.hpp"
@@ -98,10 +97,7 @@ class FusionNodelet : public ChainNodelet {
   void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
   void onMask(const sensor_msgs::ImageConstPtr& image) { matcher_->add<3>(image); }
 
-  void onFlow(const SparseFlowMsg::ConstPtr& flow) {
-    flows_.add(flow);
-    matcher_->add<4>(flow);
-  }
+  void onFlow(const SparseFlowMsg::ConstPtr& flow) { matcher_->add<4>(flow); }
   void onBlurScore(const BlurScoreMsg::ConstPtr& score) {
     if (score->sharp) matcher_->add<5>(score);
   }
@@ -143,7 +139,7 @@ class FusionNodelet : public ChainNodelet {
       input.in_map_mask = people_in_map;
       input.input_depth = toDepth(input_depth);
     }
-    input.flow = flows_.take(flow->header.stamp);
+    input.flow = fromMessage(*flow);
     input.forced = blur->forced != 0;
     const FrameStatus status = mapper_->process(input);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
@@ -230,7 +226,6 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<PoseOutput> pose_output_;
   std::mutex status_mutex_;  // guards status_publisher_, which is advertised late
   ros::Publisher status_publisher_;
-  FlowChain flows_{kInternalQueue};
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_, in_map_mask_,

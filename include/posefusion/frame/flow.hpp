@@ -19,11 +19,6 @@ struct SparseFlow {
   bool empty() const { return before.empty(); }
 };
 
-/// The flow from the first frame of `first` to the last of `second`, for corners of both: those of
-/// `second` that stand within a few pixels of where one of `first` went. Around a corner the flow
-/// counts as constant. Where the frames are not successive: `second`.
-SparseFlow join(const SparseFlow& first, const SparseFlow& second);
-
 /// Points followed from the last frame into the newest one.
 struct FollowedPoints {
   std::vector<cv::Point2f> after;   ///< in the order of the question
