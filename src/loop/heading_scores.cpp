@@ -27,7 +27,7 @@ void addPixel(const float* range, const float* grey, float seen, float inverse_t
     const float agrees = off < 1.0F ? 1.0F : 0.0F;
     const float g = grey[h];
     s.known[h] += known;
-    s.difference[h] += known * off;
+    s.difference[h] += known * off * off;
     s.agreeing[h] += agrees;
     s.m[h] += agrees * g;
     s.mm[h] += agrees * g * g;

@@ -34,24 +34,6 @@ void set(MapPoints& points, std::size_t slot, const SurfelArrays& s, std::size_t
   points.intensity[slot] = 0.299F * s.r[i] + 0.587F * s.g[i] + 0.114F * s.b[i];
 }
 
-/// Sum of the normals within an angle of a direction.
-struct Bundle {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  std::size_t count = 0;
-};
-
-Bundle around(const Normals& n, const Eigen::Vector3d& direction, double min_cosine,
-              std::size_t stride = 1) {
-  Bundle bundle;
-  for (std::size_t i = 0; i < n.count; i += stride) {
-    const Eigen::Vector3d normal(n.x[i], n.y[i], n.z[i]);
-    if (normal.dot(direction) < min_cosine) continue;
-    bundle.sum += normal;
-    ++bundle.count;
-  }
-  return bundle;
-}
-
 }  // namespace
 
 MapPoints thinnedPoints(const SurfelMap& map, double voxel_m) {
@@ -75,35 +57,6 @@ MapPoints thinnedPoints(const SurfelMap& map, double voxel_m) {
     set(points, found->second, s, i);
   });
   return points;
-}
-
-std::optional<Eigen::Vector3d> levelDirection(const Normals& normals, const Eigen::Vector3d& guess,
-                                              double max_angle_rad, double least) {
-  constexpr double kTries = 200, kMaxVoters = 2000, kBundle_rad = 0.105;
-  constexpr int kMeanSteps = 3;
-  const double min_cosine = std::cos(max_angle_rad), bundle_cosine = std::cos(kBundle_rad);
-  const auto stride = [&](double most) {
-    return std::max<std::size_t>(
-        1, static_cast<std::size_t>(static_cast<double>(normals.count) / most));
-  };
-  Eigen::Vector3d best = guess.normalized();
-  std::size_t most = 0;
-  for (std::size_t i = 0; i < normals.count; i += stride(kTries)) {
-    const Eigen::Vector3d candidate(normals.x[i], normals.y[i], normals.z[i]);
-    if (candidate.dot(guess.normalized()) < min_cosine) continue;
-    const std::size_t votes = around(normals, candidate, bundle_cosine, stride(kMaxVoters)).count;
-    if (votes <= most) continue;
-    most = votes;
-    best = candidate;
-  }
-  Bundle bundle;
-  for (int i = 0; i < kMeanSteps && most > 0; ++i) {
-    bundle = around(normals, best, bundle_cosine);
-    if (bundle.count > 0) best = bundle.sum.normalized();
-  }
-  if (static_cast<double>(bundle.count) < least * static_cast<double>(normals.count)) return {};
-  if (bundle.count == 0 || best.dot(guess.normalized()) < min_cosine) return {};
-  return best;
 }
 
 }  // namespace pf

@@ -18,6 +18,8 @@ namespace {
 constexpr double kBin_rad = 0.033;  // of the panorama, about: a pixel of the query and a bit
 constexpr double kUpReach_rad = 0.9;
 constexpr double kSameTilt_rad = 0.03;
+constexpr double kLeastFacing = 0.2;
+constexpr double kSameHeight_m = 0.05;
 constexpr double kApart_m = 0.2, kApart_rad = 0.17;
 
 /// Rotation of the camera in a frame whose z axis is up, looking along x: from the direction
@@ -79,44 +81,88 @@ QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const Panora
       rays.column.push_back(
           std::min(shape.columns() - 1, static_cast<int>(std::floor((azimuth + M_PI) / bin))));
       rays.range.push_back(static_cast<float>(range));
-      const double tolerance = 0.5 * step_m + 0.5 * bin * range + 3.0 * depthSigma(depth);
-      rays.inverse_tolerance.push_back(static_cast<float>(1.0 / tolerance));
+      // Along the ray a leaning surface is off by more than across it, within a bin most of all.
+      const double cosine = std::max<double>(kLeastFacing, query.facing.at<float>(v, u));
+      const double across = 0.5 * step_m + 0.5 * bin * range * std::sqrt(1.0 - cosine * cosine) +
+                            3.0 * depthSigma(depth);
+      rays.inverse_tolerance.push_back(static_cast<float>(cosine / across));
       rays.intensity.push_back(query.intensity.at<float>(v, u));
     }
   }
   return rays;
 }
 
+/// Positions at one height, with one tilt.
+struct Layer {
+  std::size_t tilt = 0;
+  double height_m = 0;
+};
+
 /// The grid and everything that is looked up in it.
 struct Grid {
   Eigen::Isometry3d T_map_grid;
   PanoramaShape shape;
   std::vector<Tilt> tilts;
+  std::vector<Layer> layers;
   int side = 0;  ///< positions along x and y
-  std::vector<double> heights_m;
   double step_m = 0;
 
-  std::size_t positions() const { return heights_m.size() * static_cast<std::size_t>(side * side); }
-  std::size_t poses() const {
-    return positions() * tilts.size() * static_cast<std::size_t>(shape.headings);
+  std::size_t positions() const { return layers.size() * static_cast<std::size_t>(side * side); }
+  std::size_t poses() const { return positions() * static_cast<std::size_t>(shape.headings); }
+  const Layer& layer(std::size_t position) const {
+    return layers[position / static_cast<std::size_t>(side * side)];
   }
   Eigen::Vector3d position(std::size_t i) const {
     const auto n = static_cast<std::size_t>(side);
     const auto steps = [&](std::size_t k) { return static_cast<int>(k) - side / 2; };
-    return {step_m * steps(i % n), step_m * steps(i / n % n), heights_m[i / (n * n)]};
+    return {step_m * steps(i % n), step_m * steps(i / n % n), layer(i).height_m};
   }
-  /// Poses are numbered by position, tilt, heading.
+  /// Poses are numbered by position and heading.
   Eigen::Isometry3d pose(std::size_t number) const {
     const auto headings = static_cast<std::size_t>(shape.headings);
     const double heading = 2.0 * M_PI * static_cast<double>(number % headings) / shape.headings;
-    const std::size_t rest = number / headings;
+    const std::size_t i = number / headings;
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
-                 tilts[rest % tilts.size()].R_grid_camera;
-    T.translation() = position(rest / tilts.size());
+                 tilts[layer(i).tilt].R_grid_camera;
+    T.translation() = position(i);
     return orthonormalised(T_map_grid * T);
   }
 };
+
+/// The query's directions for each tilt, rows counted from the lowest.
+void addTilts(const PlaceQuery& query, const std::vector<Eigen::Vector3d>& ups, Grid& grid) {
+  int lowest = 1 << 20, highest = -lowest;
+  for (const Eigen::Vector3d& up : ups) {
+    const Eigen::Matrix3d R = tiltOf(up);
+    grid.tilts.push_back({R, raysOf(query, R, grid.shape, grid.step_m)});
+    for (const int row : grid.tilts.back().rays.row) {
+      lowest = std::min(lowest, row);
+      highest = std::max(highest, row);
+    }
+  }
+  for (Tilt& tilt : grid.tilts) {
+    for (int& row : tilt.rays.row) row -= lowest;
+  }
+  grid.shape.rows = std::max(0, highest - lowest + 1);
+  grid.shape.lowest_rad = static_cast<float>(lowest) * grid.shape.bin_rad();
+}
+
+/// The heights of the configuration with the tilt of before; with that of the query's own floor,
+/// the height at which this is the floor of the map (points in the frame of the grid).
+void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearchConfig& config,
+               Grid& grid) {
+  for (const double height_m : config.heights_m) grid.layers.push_back({0, height_m});
+  const std::size_t own = grid.tilts.size() - 1;
+  if (own != 0) grid.layers.push_back({own, 0.0});
+  const auto levels = findLevels(orientedPoints(near), Eigen::Vector3d::UnitZ(), 2 * kSameTilt_rad);
+  if (!levels || !query.floor_m) return;
+  const double height_m = levels->lowest_m + *query.floor_m;
+  const bool known = std::any_of(grid.layers.begin(), grid.layers.end(), [&](const Layer& layer) {
+    return layer.tilt == own && std::abs(layer.height_m - height_m) < kSameHeight_m;
+  });
+  if (!known) grid.layers.push_back({own, height_m});
+}
 
 Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
               const PlaceSearchConfig& config) {
@@ -134,21 +180,7 @@ Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Ei
   grid.shape.max_range_m = static_cast<float>(config.max_range_m);
   grid.step_m = config.step_m;
   grid.side = 2 * static_cast<int>(std::lround(config.reach_m / config.step_m)) + 1;
-  grid.heights_m = config.heights_m;
-  int lowest = 1 << 20, highest = -lowest;
-  for (const Eigen::Vector3d& u : ups) {
-    const Eigen::Matrix3d R = tiltOf(u);
-    grid.tilts.push_back({R, raysOf(query, R, grid.shape, config.step_m)});
-    for (const int row : grid.tilts.back().rays.row) {
-      lowest = std::min(lowest, row);
-      highest = std::max(highest, row);
-    }
-  }
-  for (Tilt& tilt : grid.tilts) {
-    for (int& row : tilt.rays.row) row -= lowest;
-  }
-  grid.shape.rows = std::max(0, highest - lowest + 1);
-  grid.shape.lowest_rad = static_cast<float>(lowest) * grid.shape.bin_rad();
+  addTilts(query, ups, grid);
   return grid;
 }
 
@@ -181,6 +213,27 @@ std::vector<PlaceCandidate> pickBest(const Grid& grid, const std::vector<PlaceCa
   return best;
 }
 
+/// Sets the query's `up` and `floor_m` from the surfaces that face up.
+void findFloor(const FrameLevel& level, const Eigen::Vector3d& up_guess, PlaceQuery& query) {
+  std::vector<float> p[6];
+  for (int v = 0; v < level.depth_m.rows; ++v) {
+    for (int u = 0; u < level.depth_m.cols; ++u) {
+      if (level.normal_z.at<float>(v, u) >= 0) continue;
+      const Eigen::Vector3d point = level.camera.unproject(u, v, level.depth_m.at<float>(v, u));
+      for (int i = 0; i < 3; ++i) p[i].push_back(static_cast<float>(point[i]));
+      p[3].push_back(level.normal_x.at<float>(v, u));
+      p[4].push_back(level.normal_y.at<float>(v, u));
+      p[5].push_back(level.normal_z.at<float>(v, u));
+    }
+  }
+  const auto levels = findLevels(
+      {p[0].data(), p[1].data(), p[2].data(), p[3].data(), p[4].data(), p[5].data(), p[0].size()},
+      up_guess, kUpReach_rad);
+  if (!levels) return;
+  query.up = levels->up;
+  query.floor_m = -levels->lowest_m;
+}
+
 }  // namespace
 
 PlaceSearchConfig wideSearch() {
@@ -200,27 +253,28 @@ PlaceQuery placeQuery(const WorkingFrame& frame, const Eigen::Vector3d& up_guess
   cv::Mat people;
   cv::resize(coarse.still, people, query.depth_m.size(), 0, 0, cv::INTER_AREA);
   query.depth_m.setTo(0, people < 255);
-  std::vector<float> n[3];
-  for (int v = 0; v < coarse.depth_m.rows; ++v) {
-    for (int u = 0; u < coarse.depth_m.cols; ++u) {
-      if (coarse.normal_z.at<float>(v, u) >= 0) continue;
-      n[0].push_back(coarse.normal_x.at<float>(v, u));
-      n[1].push_back(coarse.normal_y.at<float>(v, u));
-      n[2].push_back(coarse.normal_z.at<float>(v, u));
+  query.facing = cv::Mat(query.depth_m.size(), CV_32FC1, cv::Scalar(0));
+  for (int v = 0; v < query.facing.rows; ++v) {
+    for (int u = 0; u < query.facing.cols; ++u) {
+      const Eigen::Vector3d ray = query.camera.unproject(u, v, 1.0).normalized();
+      const Eigen::Vector3d normal(coarse.normal_x.at<float>(2 * v, 2 * u),
+                                   coarse.normal_y.at<float>(2 * v, 2 * u),
+                                   coarse.normal_z.at<float>(2 * v, 2 * u));
+      query.facing.at<float>(v, u) = static_cast<float>(-normal.dot(ray));
     }
   }
-  query.up =
-      levelDirection({n[0].data(), n[1].data(), n[2].data(), n[0].size()}, up_guess, kUpReach_rad);
+  findFloor(coarse, up_guess, query);
   return query;
 }
 
 std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
                                          const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
                                          const PlaceSearchConfig& config) {
-  const Grid grid = makeGrid(query, around, up, config);
+  Grid grid = makeGrid(query, around, up, config);
   if (grid.shape.rows == 0) return {};
   const MapPoints near =
       cut(points, grid.T_map_grid.inverse(), config.max_range_m + std::sqrt(2.0) * config.reach_m);
+  addLayers(query, near, config, grid);
   std::vector<PlaceCandidate> all(grid.poses());
   parallelFor(grid.positions(), 8, [&](std::size_t begin, std::size_t end) {
     Panorama panorama;
@@ -229,17 +283,15 @@ std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQue
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f p = grid.position(i).cast<float>();
       panorama.draw(near, p.data(), grid.shape);
-      for (std::size_t t = 0; t < grid.tilts.size(); ++t) {
-        const QueryRays& rays = grid.tilts[t].rays;
-        scores.compute(panorama, rays, grid.shape.headings);
-        const float share = 1.0F / static_cast<float>(std::max<std::size_t>(1, rays.size()));
-        for (std::size_t h = 0; h < headings; ++h) {
-          PlaceCandidate& c = all[(i * grid.tilts.size() + t) * headings + h];
-          c.score = scores.score[h];
-          c.explained = scores.known[h] * share;
-          c.agreeing = scores.agreeing[h] / std::max(1.0F, scores.known[h]);
-          c.correlation = scores.correlation[h];
-        }
+      const QueryRays& rays = grid.tilts[grid.layer(i).tilt].rays;
+      scores.compute(panorama, rays, grid.shape.headings);
+      const float share = 1.0F / static_cast<float>(std::max<std::size_t>(1, rays.size()));
+      for (std::size_t h = 0; h < headings; ++h) {
+        PlaceCandidate& c = all[i * headings + h];
+        c.score = scores.score[h];
+        c.explained = scores.known[h] * share;
+        c.agreeing = scores.agreeing[h] / std::max(1.0F, scores.known[h]);
+        c.correlation = scores.correlation[h];
       }
     }
   });

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -110,10 +111,10 @@ double overlapOf(const SurfelMap& map, const TrueFrame& query) {
 nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
                                  const TrueFrame& query, const Eigen::Isometry3d& last,
                                  const Eigen::Vector3d& up, const PlaceSearchConfig& config) {
-  Stopwatch watch;
+  const std::clock_t begin = std::clock();
   const PlaceQuery small = placeQuery(query.frame, last.linear().transpose() * up);
   const auto candidates = searchPlaces(points, small, last, up, config);
-  const double search_ms = watch.lapMs();
+  const double search_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   int rank = 0;
   for (std::size_t i = 0; i < candidates.size() && rank == 0; ++i) {
     if (isRight(candidates[i].T_map_camera, query.T)) rank = static_cast<int>(i) + 1;
@@ -123,12 +124,29 @@ nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
                                 {"overlap", overlapOf(map, query)},
                                 {"moved_m", step.translation().norm()},
                                 {"turned_deg", degreesBetween(last, query.T)},
+                                {"rose_m", up.dot(query.T.translation() - last.translation())},
                                 {"rank", rank},
                                 {"candidates", candidates.size()},
-                                {"search_ms", search_ms}};
+                                {"search_cpu_ms", search_ms}};
   if (small.up) {
     const Eigen::Vector3d up_true = query.T.linear().transpose() * up;
+    const Eigen::Vector3d up_last = last.linear().transpose() * up;
+    out["tilted_deg"] = std::acos(std::min(1.0, up_last.dot(up_true))) * 180.0 / M_PI;
+    if (small.floor_m) out["floor_m"] = *small.floor_m;
     out["up_error_deg"] = std::acos(std::min(1.0, small.up->dot(up_true))) * 180.0 / M_PI;
+  }
+  PlaceSearchConfig there = config;
+  there.reach_m = 0;
+  there.heights_m = {0.0};
+  const auto at_truth = searchPlaces(points, small, query.T, up, there);
+  for (const PlaceCandidate& c : at_truth) {
+    if (!isRight(c.T_map_camera, query.T)) continue;
+    out["true"] = {c.score, c.explained, c.agreeing, c.correlation};
+    break;
+  }
+  if (!candidates.empty()) {
+    const PlaceCandidate& c = candidates[0];
+    out["best"] = {c.score, c.explained, c.agreeing, c.correlation};
   }
   if (!candidates.empty()) out["best_score"] = candidates[0].score;
   if (rank > 0) out["right_score"] = candidates[static_cast<std::size_t>(rank) - 1].score;
@@ -152,17 +170,17 @@ int placeCheck(const Options& options) {
   Stopwatch watch;
   const MapPoints points = thinnedPoints(map);
   const double thin_ms = watch.lapMs();
-  const auto up =
-      levelDirection({points.nx.data(), points.ny.data(), points.nz.data(), points.size()},
-                     last.linear() * -Eigen::Vector3d::UnitY(), 0.9);
-  if (!up) throw InputError(options.sequence + ": no floor in the map");
+  const auto levels =
+      findLevels(orientedPoints(points), last.linear() * -Eigen::Vector3d::UnitY(), 0.9);
+  if (!levels) throw InputError(options.sequence + ": no floor in the map");
+  std::cerr << "up " << levels->up.transpose() << "\n";
   const PlaceSearchConfig config = options.wide ? wideSearch() : PlaceSearchConfig{};
   nlohmann::ordered_json queries = nlohmann::ordered_json::array();
   double next_s = options.query_from_s;
   while (recording.next([&](double t) { return t >= next_s; }, frame)) {
     if (frame.time_s > options.query_until_s) break;
     next_s = frame.time_s + options.query_step_s;
-    queries.push_back(searchOne(map, points, frame, last, *up, config));
+    queries.push_back(searchOne(map, points, frame, last, levels->up, config));
     std::cerr << queries.back().dump() << "\n";
   }
   const nlohmann::ordered_json out = {

@@ -25,16 +25,26 @@ struct MapPoints {
 /// support. The order depends on the map alone.
 MapPoints thinnedPoints(const SurfelMap& map, double voxel_m = 0.04);
 
-/// Unit normals (components may be 0: no normal).
-struct Normals {
+/// Points with unit normals, of which `count`.
+struct OrientedPoints {
   const float *x, *y, *z;
+  const float *nx, *ny, *nz;
   std::size_t count;
 };
 
+OrientedPoints orientedPoints(const MapPoints& points);
+
+/// The level surfaces among some points.
+struct Levels {
+  Eigen::Vector3d up;   ///< against gravity, unit length
+  double lowest_m = 0;  ///< along `up`: of the lowest large level, a floor among tables
+};
+
 /// The direction that floors and table tops face: the one with the most normals within 6 degrees of
-/// it, of those within `max_angle_rad` of `guess`; their mean. Nothing when fewer than `least` of
-/// the normals agree. In the frame of the normals.
-std::optional<Eigen::Vector3d> levelDirection(const Normals& normals, const Eigen::Vector3d& guess,
-                                              double max_angle_rad, double least = 0.05);
+/// it, of those within `max_angle_rad` of `guess`; then of the plane through the largest level
+/// (normals of surfaces seen at a low angle lean). Nothing when fewer than 5 % of the points face
+/// it. In the frame of the points.
+std::optional<Levels> findLevels(const OrientedPoints& points, const Eigen::Vector3d& guess,
+                                 double max_angle_rad);
 
 }  // namespace pf

@@ -17,8 +17,10 @@ struct PlaceQuery {
   PinholeCamera camera;
   cv::Mat depth_m;    ///< CV_32FC1, 0 = nothing known
   cv::Mat intensity;  ///< CV_32FC1, 0..255
+  cv::Mat facing;     ///< CV_32FC1, cosine between ray and normal, 0 = nothing known
   /// Direction against gravity in the camera frame, from the floor or a table in view.
   std::optional<Eigen::Vector3d> up;
+  std::optional<double> floor_m;  ///< how far it is below the camera
 };
 
 /// Shrinks the coarsest level of the frame. `up_guess`: direction against gravity in the camera
