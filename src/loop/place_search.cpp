@@ -148,13 +148,14 @@ void addTilts(const PlaceQuery& query, const std::vector<Eigen::Vector3d>& ups, 
   grid.shape.lowest_rad = static_cast<float>(lowest) * grid.shape.bin_rad();
 }
 
-/// The heights of the configuration with the tilt of before; with that of the query's own floor,
-/// the height at which this is the floor of the map (points in the frame of the grid).
+/// The heights of the configuration with the tilt of the query's own floor (else that of before),
+/// the height at which its floor is that of the map (points in the frame of the grid), and tilt and
+/// height as they were.
 void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearchConfig& config,
                Grid& grid) {
-  for (const double height_m : config.heights_m) grid.layers.push_back({0, height_m});
   const std::size_t own = grid.tilts.size() - 1;
-  if (own != 0) grid.layers.push_back({own, 0.0});
+  for (const double height_m : config.heights_m) grid.layers.push_back({own, height_m});
+  if (own != 0) grid.layers.push_back({0, 0.0});
   const auto levels = findLevels(orientedPoints(near), Eigen::Vector3d::UnitZ(), 2 * kSameTilt_rad);
   if (!levels || !query.floor_m) return;
   const double height_m = levels->lowest_m + *query.floor_m;

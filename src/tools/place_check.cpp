@@ -20,6 +20,7 @@
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/loop/place_search.hpp"
+#include "posefusion/loop/verify.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 
@@ -61,7 +62,8 @@ class Recording {
       if (!read->defect.empty() || !pose || !wanted(out.time_s)) continue;
       out.T = *pose;
       const auto path = std::filesystem::path(folder_) / "mask" / (formatStamp(stamp_ns) + ".png");
-      const cv::Mat mask = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
+      cv::Mat mask;
+      if (std::filesystem::exists(path)) mask = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
       if (!mask.empty()) read->frame.depth.setTo(0, mask > 0);
       out.frame.assign(read->frame, mask, FrameConfig{});
       return true;
@@ -108,6 +110,36 @@ double overlapOf(const SurfelMap& map, const TrueFrame& query) {
   return static_cast<double>(cv::countNonZero(known)) / std::max(1, query.frame.valid_pixels);
 }
 
+constexpr double kTrue_m = 0.1, kTrue_deg = 3.0;  // of an accepted place
+
+/// Verifies all candidates: what became of them, and each one in a line for choosing limits.
+nlohmann::ordered_json verifyAll(const SurfelMap& map, const TrueFrame& query,
+                                 const std::vector<PlaceCandidate>& candidates) {
+  PlaceVerifier verifier{TrackingConfig{}};
+  int first_right = 0, right = 0, wrong = 0;
+  nlohmann::ordered_json each = nlohmann::ordered_json::array();
+  const std::clock_t begin = std::clock();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const PlaceVerdict v = verifier.verify(map, query.frame, candidates[i].T_map_camera);
+    const Eigen::Isometry3d& T = v.alignment.T_map_camera;
+    const double off_m = (T.translation() - query.T.translation()).norm();
+    const double off_deg = degreesBetween(T, query.T);
+    const bool is_true = off_m < kTrue_m && off_deg < kTrue_deg;
+    if (v.accepted()) ++(is_true ? right : wrong);
+    if (v.accepted() && is_true && first_right == 0) first_right = static_cast<int>(i) + 1;
+    const PlaceAgreement& a = v.agreement;
+    each.push_back({off_m, off_deg, std::string(name(v.doubt)), a.overlap, a.agreeing,
+                    a.seen_through, a.hidden, a.correlation, v.alignment.converged,
+                    v.alignment.free_directions, candidates[i].score});
+  }
+  const double cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return {{"first_right", first_right},
+          {"right", right},
+          {"wrong", wrong},
+          {"cpu_ms_each", cpu_ms / std::max<double>(1, static_cast<double>(candidates.size()))},
+          {"each", each}};
+}
+
 nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
                                  const TrueFrame& query, const Eigen::Isometry3d& last,
                                  const Eigen::Vector3d& up, const PlaceSearchConfig& config) {
@@ -149,6 +181,7 @@ nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
     out["best"] = {c.score, c.explained, c.agreeing, c.correlation};
   }
   if (!candidates.empty()) out["best_score"] = candidates[0].score;
+  out["verify"] = verifyAll(map, query, candidates);
   if (rank > 0) out["right_score"] = candidates[static_cast<std::size_t>(rank) - 1].score;
   return out;
 }
@@ -177,7 +210,8 @@ int placeCheck(const Options& options) {
   const PlaceSearchConfig config = options.wide ? wideSearch() : PlaceSearchConfig{};
   nlohmann::ordered_json queries = nlohmann::ordered_json::array();
   double next_s = options.query_from_s;
-  while (recording.next([&](double t) { return t >= next_s; }, frame)) {
+  Recording later(options);
+  while (later.next([&](double t) { return t >= next_s; }, frame)) {
     if (frame.time_s > options.query_until_s) break;
     next_s = frame.time_s + options.query_step_s;
     queries.push_back(searchOne(map, points, frame, last, levels->up, config));

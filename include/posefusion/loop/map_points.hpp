@@ -23,7 +23,7 @@ struct MapPoints {
 
 /// Of each voxel and facing (the axis nearest to the normal) the stable surfel with the most
 /// support. The order depends on the map alone.
-MapPoints thinnedPoints(const SurfelMap& map, double voxel_m = 0.04);
+MapPoints thinnedPoints(const SurfelMap& map, double voxel_m = 0.06);
 
 /// Points with unit normals, of which `count`.
 struct OrientedPoints {
