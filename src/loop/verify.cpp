@@ -14,6 +14,7 @@ namespace {
 // map shows other things than from the right one.
 constexpr int kRounds = 3;
 constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
+constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.06;
 constexpr float kAgreeingSigmas = 4.0F;
 constexpr float kMinNormalCosine = 0.7F;
 // Grey levels are compared in windows of so many pixels: light and exposure change slowly.
@@ -57,9 +58,9 @@ double angleOf(const Eigen::Isometry3d& T) { return logSo3(T.linear()).norm(); }
 }  // namespace
 
 std::string_view name(PlaceDoubt doubt) {
-  constexpr std::array<std::string_view, 8> kNames = {
-      "none",       "little_overlap", "not_converged", "degenerate",
-      "moved_away", "disagrees",      "seen_through",  "other_picture"};
+  constexpr std::array<std::string_view, kPlaceDoubts> kNames = {
+      "none",      "little_overlap", "not_converged", "degenerate", "moved_away",
+      "disagrees", "seen_through",   "other_picture", "ambiguous"};
   return kNames.at(static_cast<std::size_t>(doubt));
 }
 
@@ -100,6 +101,33 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   return result;
 }
 
+TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
+  TrackingStart start;
+  start.T_map_view = start.T_map_camera = start.prior.T_map_camera = T_map_camera;
+  start.prior.covariance = widePrior();
+  return start;
+}
+
+PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
+                      const VerifyLimits& limits) {
+  const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
+  if (v.agreement.overlap < limits.min_overlap) return PlaceDoubt::little_overlap;
+  if (!v.alignment.converged) return PlaceDoubt::not_converged;
+  // Somebody or something new before the map does not speak against the place, up to a point.
+  const double visible = 1.0 - v.agreement.hidden;
+  if (v.agreement.hidden > limits.max_hidden ||
+      v.agreement.agreeing < limits.min_agreeing * visible) {
+    return PlaceDoubt::disagrees;
+  }
+  if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;
+  if (v.agreement.correlation < limits.min_correlation) return PlaceDoubt::other_picture;
+  if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
+  if (step.translation().norm() > limits.max_shift_m || angleOf(step) > limits.max_turn_rad) {
+    return PlaceDoubt::moved_away;
+  }
+  return PlaceDoubt::none;
+}
+
 PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& frame,
                                    const Eigen::Isometry3d& T_map_candidate) {
   RenderOptions options;
@@ -110,10 +138,7 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
     const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
     renderer_.render(map, frame.camera, T, options, view_);
     model_.assign(view_);
-    TrackingStart start;
-    start.T_map_view = start.T_map_camera = start.prior.T_map_camera = T;
-    start.prior.covariance = widePrior();
-    start.prior.is_measured = true;
+    TrackingStart start = freeStart(T);
     start.brightness = verdict.alignment.brightness;
     verdict.alignment = track(frame, model_, start, tracking_);
     const Eigen::Isometry3d step = T.inverse() * verdict.alignment.T_map_camera;
@@ -122,23 +147,29 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
   }
   renderer_.render(map, frame.camera, verdict.alignment.T_map_camera, options, view_);
   verdict.agreement = compareViews(frame, view_);
-  verdict.doubt = judge(verdict, T_map_candidate);
+  verdict.doubt = judgePlace(verdict, T_map_candidate, limits_);
   return verdict;
 }
 
-PlaceDoubt PlaceVerifier::judge(const PlaceVerdict& v,
-                                const Eigen::Isometry3d& T_map_candidate) const {
-  const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
-  if (v.agreement.overlap < limits_.min_overlap) return PlaceDoubt::little_overlap;
-  if (!v.alignment.converged) return PlaceDoubt::not_converged;
-  if (v.agreement.agreeing < limits_.min_agreeing) return PlaceDoubt::disagrees;
-  if (v.agreement.seen_through > limits_.max_seen_through) return PlaceDoubt::seen_through;
-  if (v.agreement.correlation < limits_.min_correlation) return PlaceDoubt::other_picture;
-  if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
-  if (step.translation().norm() > limits_.max_shift_m || angleOf(step) > limits_.max_turn_rad) {
-    return PlaceDoubt::moved_away;
+PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame& frame,
+                                       const std::vector<PlaceCandidate>& candidates,
+                                       std::size_t most) {
+  PlaceVerdict best;
+  for (std::size_t i = 0; i < std::min(most, candidates.size()); ++i) {
+    const PlaceVerdict verdict = verify(map, frame, candidates[i].T_map_camera);
+    if (i == 0) best = verdict;
+    if (!verdict.accepted() || i == 0) continue;
+    if (best.accepted()) {
+      const Eigen::Isometry3d step =
+          best.alignment.T_map_camera.inverse() * verdict.alignment.T_map_camera;
+      if (step.translation().norm() > kSamePlace_m || angleOf(step) > kSamePlace_rad) {
+        best.doubt = PlaceDoubt::ambiguous;
+        return best;
+      }
+    }
+    if (!best.accepted() || verdict.score() > best.score()) best = verdict;
   }
-  return PlaceDoubt::none;
+  return best;
 }
 
 }  // namespace pf

@@ -133,7 +133,13 @@ nlohmann::ordered_json verifyAll(const SurfelMap& map, const TrueFrame& query,
                     v.alignment.free_directions, candidates[i].score});
   }
   const double cpu_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  return {{"first_right", first_right},
+  const PlaceVerdict best = verifier.verifyBest(map, query.frame, candidates);
+  const bool best_true =
+      (best.alignment.T_map_camera.translation() - query.T.translation()).norm() < kTrue_m &&
+      degreesBetween(best.alignment.T_map_camera, query.T) < kTrue_deg;
+  return {{"best", std::string(name(best.doubt))},
+          {"best_true", best_true},
+          {"first_right", first_right},
           {"right", right},
           {"wrong", wrong},
           {"cpu_ms_each", cpu_ms / std::max<double>(1, static_cast<double>(candidates.size()))},

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
+#include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "posefusion/frame/working_frame.hpp"
+#include "posefusion/loop/place_search.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/tracking/tracker.hpp"
 
@@ -19,9 +21,11 @@ enum class PlaceDoubt {
   moved_away,      ///< the alignment went far from the candidate
   disagrees,       ///< too few pixels are where the map has them
   seen_through,    ///< the frame sees through what the map shows
-  other_picture    ///< the grey levels do not fit
+  other_picture,   ///< the grey levels do not fit
+  ambiguous        ///< another place fits as well
 };
 
+constexpr std::size_t kPlaceDoubts = 9;
 std::string_view name(PlaceDoubt doubt);
 
 /// How a frame and the map, seen from one pose, agree.
@@ -46,14 +50,22 @@ struct PlaceVerdict {
 /// What is asked of a place that is believed.
 struct VerifyLimits {
   double min_overlap = 0.25;
-  double min_agreeing = 0.8;
+  double min_agreeing = 0.85;  ///< of what is not hidden
+  double max_hidden = 0.4;
   double max_seen_through = 0.1;
-  double min_correlation = 0.5;
+  double min_correlation = 0.68;
   double max_shift_m = 0.4, max_turn_rad = 0.35;
 };
 
 /// Compares a frame with the map drawn from its pose.
 PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view);
+
+/// Where an alignment starts that knows no more than a pose to begin with.
+TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera);
+
+/// What speaks against an alignment that began at `T_map_candidate`.
+PlaceDoubt judgePlace(const PlaceVerdict& verdict, const Eigen::Isometry3d& T_map_candidate,
+                      const VerifyLimits& limits);
 
 /// Aligns frames with the map from a first guess and judges the result: geometry both ways (what
 /// the map shows must be in the frame too, not be seen through), grey levels, conditioning. Keeps
@@ -66,9 +78,12 @@ class PlaceVerifier {
   PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame,
                       const Eigen::Isometry3d& T_map_candidate);
 
- private:
-  PlaceDoubt judge(const PlaceVerdict& verdict, const Eigen::Isometry3d& T_map_candidate) const;
+  /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best;
+  /// `ambiguous` when they lead to different poses. Else the verdict on the first.
+  PlaceVerdict verifyBest(const SurfelMap& map, const WorkingFrame& frame,
+                          const std::vector<PlaceCandidate>& candidates, std::size_t most = 6);
 
+ private:
   TrackingConfig tracking_;
   VerifyLimits limits_;
   SurfelRenderer renderer_;
