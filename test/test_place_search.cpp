@@ -178,7 +178,7 @@ TEST(VerifyPlace, NoWrongPlaceIsAccepted) {
 TEST(VerifyPlace, SeesWhenTheMapsSurfacesAreGone) {
   // A frame whose walls stand half a metre farther sees through the map.
   TrueFrame truth = room().sequence.frame(8);
-  truth.frame.depth += 500.0 * (truth.frame.depth > 0) / 255.0;
+  cv::add(truth.frame.depth, 500, truth.frame.depth, truth.frame.depth > 0);  // mm
   WorkingFrame frame;
   frame.assign(truth.frame, cv::Mat(), FrameConfig{});
   ModelView view;
