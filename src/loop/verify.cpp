@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/loop/verify.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -69,6 +70,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   const int across = (level.depth_m.cols + kWindow - 1) / kWindow;
   const int down = (level.depth_m.rows + kWindow - 1) / kWindow;
   std::vector<GreySums> windows(static_cast<std::size_t>(across * down));
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
   double valid = 0, known = 0, agreeing = 0, through = 0, hidden = 0;
   for (int v = 0; v < level.depth_m.rows; ++v) {
     for (int u = 0; u < level.depth_m.cols; ++u) {
@@ -87,6 +89,9 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
                            level.normal_z.at<float>(v, u) * view.normal_z.at<float>(v, u);
       if (level.normal_z.at<float>(v, u) < 0 && cosine < kMinNormalCosine) continue;
       ++agreeing;
+      const Eigen::Vector3d n(view.normal_x.at<float>(v, u), view.normal_y.at<float>(v, u),
+                              view.normal_z.at<float>(v, u));
+      normals += n * n.transpose();
       if (level.still.at<std::uint8_t>(v, u) == 0) continue;
       windows[static_cast<std::size_t>(v / kWindow * across + u / kWindow)].add(
           level.intensity.at<float>(v, u), view.intensity.at<float>(v, u));
@@ -98,6 +103,8 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   result.seen_through = through / std::max(1.0, known);
   result.hidden = hidden / std::max(1.0, known);
   result.correlation = correlationOf(windows);
+  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals / std::max(1.0, agreeing))
+                      .eigenvalues()[0];
   return result;
 }
 
@@ -120,7 +127,10 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
     return PlaceDoubt::disagrees;
   }
   if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;
-  if (v.agreement.correlation < limits.min_correlation) return PlaceDoubt::other_picture;
+  const bool has_shape =
+      v.agreement.overlap >= limits.shape_overlap && v.agreement.spread >= limits.shape_spread;
+  const double least = has_shape ? limits.min_correlation_of_shape : limits.min_correlation;
+  if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
   if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
   if (step.translation().norm() > limits.max_shift_m || angleOf(step) > limits.max_turn_rad) {
     return PlaceDoubt::moved_away;

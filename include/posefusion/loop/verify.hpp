@@ -35,6 +35,9 @@ struct PlaceAgreement {
   double seen_through = 0;  ///< part of those where the frame sees beyond the map's surface
   double hidden = 0;        ///< part of those where the frame has something before it
   double correlation = 0;   ///< of the grey levels where the depths agree, in small windows
+  /// How much the normals of what agrees vary: the least eigenvalue of their mean outer product, 0
+  /// for one or two walls, 1/3 at most. Where it is small the pose may have slid.
+  double spread = 0;
 };
 
 struct PlaceVerdict {
@@ -54,6 +57,9 @@ struct VerifyLimits {
   double max_hidden = 0.4;
   double max_seen_through = 0.1;
   double min_correlation = 0.68;
+  /// Enough where the shape alone says a lot: on real cameras colour and depth fit badly.
+  double min_correlation_of_shape = 0.3;
+  double shape_overlap = 0.75, shape_spread = 0.05;
   double max_shift_m = 0.4, max_turn_rad = 0.35;
 };
 
