@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "posefusion/loop/config.hpp"
+#include "posefusion/loop/features.hpp"
+#include "posefusion/loop/ferns.hpp"
+#include "posefusion/loop/keyframe_pair.hpp"
+
+namespace pf {
+
+/// Two keyframes seen to be so far apart.
+struct LoopConstraint {
+  std::int64_t from = 0, to = 0;  ///< keyframes
+  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame of `to`
+};
+
+/// What became of it all, for the summary.
+struct LoopCounts {
+  std::size_t keyframes = 0;
+  std::size_t ferns = 0;       ///< keyframes whose ferns are stored
+  std::size_t not_static = 0;  ///< keyframes whose ferns the static-view rule kept out
+  std::size_t compared = 0;    ///< pairs that were verified
+  std::size_t accepted = 0;
+  std::array<std::size_t, kPlaceDoubts> refused{};  ///< by PlaceDoubt
+  std::size_t one_way = 0;                          ///< refused: the two directions do not agree
+};
+
+/// Finds pairs of keyframes that see the same place. Candidates come from the ferns, from nearness
+/// by the poses and from features; each is verified by aligning either picture with the other. Not
+/// thread safe.
+class LoopCloser {
+ public:
+  LoopCloser(const LoopConfig& config, const TrackingConfig& tracking);
+
+  /// Ids rise. Ferns are stored by their rules, the view in any case.
+  void addKeyframe(const KeyframeView& view);
+
+  /// New poses after a correction, in the order of addKeyframe.
+  void setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera);
+
+  /// Verified constraints from older keyframes to the last one added; at most one for each.
+  std::vector<LoopConstraint> findLoops();
+
+  const LoopCounts& counts() const { return counts_; }
+  const FernDatabase& ferns() const { return ferns_; }
+
+ private:
+  struct Keyframe {
+    KeyframeView view;
+    Features features;
+  };
+  /// An older keyframe and where the last one may be in its frame.
+  struct Guess {
+    std::size_t index = 0;
+    Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  };
+
+  std::vector<Guess> guesses() const;
+  bool verify(const Guess& guess, const WorkingFrame& to, LoopConstraint& constraint);
+
+  LoopConfig config_;
+  TrackingConfig tracking_;
+  std::deque<Keyframe> keyframes_;
+  FernDatabase ferns_;
+  FernCode code_;  ///< of the last keyframe
+  LoopCounts counts_;
+};
+
+}  // namespace pf

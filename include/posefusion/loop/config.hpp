@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "posefusion/config/fields.hpp"
+
+namespace pf {
+
+/// Settings of the loop closer.
+struct LoopConfig {
+  bool enabled = true;
+  int ferns = 500;
+  int fern_seed = 1;
+  double fern_novelty = 0.3095;
+  bool static_view_rule = true;
+  int min_gap_keyframes = 10;
+  double near_m = 1.5;
+  int feature_pairs = 6;
+};
+
+inline void visitFields(LoopConfig& c, FieldVisitor& v) {
+  v.flag("enabled", c.enabled, "look for places that were seen before");
+  v.integer("ferns", c.ferns, 1, 100000, "randomised ferns that describe a keyframe");
+  v.integer("fern_seed", c.fern_seed, 0, 1000000000, "the same seed gives the same ferns");
+  v.number("fern_novelty", c.fern_novelty, 0.0, 1.0,
+           "a keyframe's ferns are stored when it differs from all others by more than this");
+  v.flag("static_view_rule", c.static_view_rule,
+         "ferns are stored only while nobody is in view (off in the modes elastic and posefusion)");
+  v.integer("min_gap_keyframes", c.min_gap_keyframes, 1, 100000,
+            "a loop leads back over at least so many keyframes");
+  v.number("near_m", c.near_m, 0.0, 1000.0,
+           "keyframes nearer than this are compared by their poses and features");
+  v.integer("feature_pairs", c.feature_pairs, 0, 1000,
+            "most near keyframes that a keyframe is compared with");
+}
+
+}  // namespace pf

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "posefusion/core/camera.hpp"
+#include "posefusion/frame/working_frame.hpp"
+#include "posefusion/loop/map_points.hpp"
+
+namespace pf {
+
+/// A small frame to look for in the map, about 40x30 pixels, people left out.
+struct PlaceQuery {
+  PinholeCamera camera;
+  cv::Mat depth_m;    ///< CV_32FC1, 0 = nothing known
+  cv::Mat intensity;  ///< CV_32FC1, 0..255
+  cv::Mat facing;     ///< CV_32FC1, cosine between ray and normal, 0 = nothing known
+  /// Direction against gravity in the camera frame, from the floor or a table in view.
+  std::optional<Eigen::Vector3d> up;
+  std::optional<double> floor_m;  ///< how far it is below the camera
+};
+
+/// Shrinks the coarsest level of the frame. `up_guess`: direction against gravity in the camera
+/// frame that a floor in view is looked for around.
+PlaceQuery placeQuery(const WorkingFrame& frame,
+                      const Eigen::Vector3d& up_guess = -Eigen::Vector3d::UnitY());
+
+/// The grid of poses.
+struct PlaceSearchConfig {
+  double reach_m = 0.9;  ///< each way, horizontally
+  double step_m = 0.15;
+  int headings = 48;                                   ///< of a full turn
+  std::vector<double> heights_m = {-0.12, 0.0, 0.12};  ///< above that of the last pose
+  double max_range_m = 6.0;                            ///< farther points are not looked at
+  int most = 50;                                       ///< candidates
+};
+
+/// The search 3 m each way, for a map that has just been loaded.
+PlaceSearchConfig wideSearch();
+
+struct PlaceCandidate {
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  double score = 0;        ///< at most 1.5; what the candidates are sorted by
+  double explained = 0;    ///< part of the query's pixels where the map shows something
+  double agreeing = 0;     ///< part of those at about the query's distance
+  double correlation = 0;  ///< of the grey levels of those that agree, -1 to 1
+};
+
+/// Where the query may have been taken: the map's points are drawn from a grid of positions around
+/// a pose and compared with it for all headings. From each position one panorama is drawn (azimuth
+/// and elevation); a heading is a shift of it, so that a pose costs no drawing of its own.
+///
+/// The score counts, per pixel of the query: at the right distance (within the noise and the grid)
+/// up to +1, off by more -1, unknown to the map 0; and half the correlation of the grey levels.
+///
+/// `up` is the direction against gravity in the map frame. The tilt of the camera is that of
+/// `around` and, where known, that of the query's own floor. Best first, none within 0.2 m and 10
+/// degrees of a better one. The bits do not depend on the number of threads.
+std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
+                                         const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+                                         const PlaceSearchConfig& config);
+
+}  // namespace pf

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "panorama.hpp"
+#include "posefusion/loop/place_search.hpp"
+
+namespace pf {
+
+/// A query's pixels as directions of one tilt, for heading 0.
+struct QueryRays {
+  std::vector<int> row, column;  ///< of a panorama
+  std::vector<float> range;      ///< m
+  std::vector<float> inverse_tolerance;
+  std::vector<float> intensity;
+
+  std::size_t size() const { return row.size(); }
+};
+
+/// How the query fits at each heading from one position. As long as there are headings.
+struct HeadingScores {
+  std::vector<float> known, agreeing, difference, score, correlation;
+
+  void compute(const Panorama& panorama, const QueryRays& rays, int headings);
+
+ private:
+  std::vector<float> m_, mm_, q_, qq_, mq_;  ///< sums for the correlation
+};
+
+}  // namespace pf

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/map_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace pf {
+namespace {
+
+/// Voxel and facing, packed: 20 bits for each coordinate.
+std::uint64_t cellOf(const SurfelArrays& s, std::size_t i, float inverse_voxel) {
+  const auto index = [&](float value) {
+    constexpr std::int64_t kHalf = 1 << 19;
+    const auto cell = static_cast<std::int64_t>(std::floor(value * inverse_voxel)) + kHalf;
+    return static_cast<std::uint64_t>(std::clamp<std::int64_t>(cell, 0, 2 * kHalf - 1));
+  };
+  const float n[3] = {s.nx[i], s.ny[i], s.nz[i]};
+  std::uint64_t axis = 0;
+  for (std::uint64_t k = 1; k < 3; ++k) {
+    if (std::abs(n[k]) > std::abs(n[axis])) axis = k;
+  }
+  const std::uint64_t facing = 2 * axis + (n[axis] < 0 ? 1 : 0);
+  return ((facing << 20 | index(s.x[i])) << 20 | index(s.y[i])) << 20 | index(s.z[i]);
+}
+
+void set(MapPoints& points, std::size_t slot, const SurfelArrays& s, std::size_t i) {
+  points.x[slot] = s.x[i];
+  points.y[slot] = s.y[i];
+  points.z[slot] = s.z[i];
+  points.nx[slot] = s.nx[i];
+  points.ny[slot] = s.ny[i];
+  points.nz[slot] = s.nz[i];
+  points.intensity[slot] = 0.299F * s.r[i] + 0.587F * s.g[i] + 0.114F * s.b[i];
+}
+
+}  // namespace
+
+MapPoints thinnedPoints(const SurfelMap& map, double voxel_m) {
+  MapPoints points;
+  points.voxel_m = static_cast<float>(voxel_m);
+  std::unordered_map<std::uint64_t, std::size_t> slots;
+  std::vector<float> support;
+  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+    if (!map.isStable(s, i) || map.isDead(s, i)) return;
+    const auto [found, is_new] =
+        slots.try_emplace(cellOf(s, i, 1.0F / points.voxel_m), support.size());
+    if (is_new) {
+      support.push_back(-1.0F);
+      for (auto* array : {&points.x, &points.y, &points.z, &points.nx, &points.ny, &points.nz,
+                          &points.intensity}) {
+        array->push_back(0.0F);
+      }
+    }
+    if (s.confidence[i] <= support[found->second]) return;
+    support[found->second] = s.confidence[i];
+    set(points, found->second, s, i);
+  });
+  return points;
+}
+
+}  // namespace pf

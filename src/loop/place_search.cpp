@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/place_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "heading_scores.hpp"
+#include "panorama.hpp"
+#include "posefusion/core/noise.hpp"
+#include "posefusion/core/parallel.hpp"
+#include "posefusion/core/se3.hpp"
+
+namespace pf {
+namespace {
+
+constexpr double kBin_rad = 0.033;  // of the panorama, about: a pixel of the query and a bit
+constexpr double kSameTilt_rad = 0.03;
+constexpr double kLeastFacing = 0.2;
+constexpr double kSameHeight_m = 0.05;
+constexpr double kApart_m = 0.2, kApart_rad = 0.17;
+
+/// Rotation of the camera in a frame whose z axis is up, looking along x: from the direction
+/// against gravity in the camera frame. Columns are the camera's axes.
+Eigen::Matrix3d tiltOf(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d z = up.normalized();
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - z.z() * z;
+  // Looking straight up or down: the top of the picture is ahead.
+  if (ahead.norm() < 0.1) ahead = -Eigen::Vector3d::UnitY() + z.y() * z;
+  const Eigen::Vector3d x = ahead.normalized();
+  Eigen::Matrix3d rows;
+  rows.row(0) = x;
+  rows.row(1) = z.cross(x);
+  rows.row(2) = z;
+  return rows;
+}
+
+/// The points around `around`, in the frame of the grid.
+MapPoints cut(const MapPoints& points, const Eigen::Isometry3d& T_grid_map, double reach_m) {
+  MapPoints near;
+  near.voxel_m = points.voxel_m;
+  const Eigen::Isometry3f T = T_grid_map.cast<float>();
+  const auto reach2 = static_cast<float>(reach_m * reach_m);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f p = T * Eigen::Vector3f(points.x[i], points.y[i], points.z[i]);
+    if (p.squaredNorm() > reach2) continue;
+    const Eigen::Vector3f n =
+        T.linear() * Eigen::Vector3f(points.nx[i], points.ny[i], points.nz[i]);
+    near.x.push_back(p.x());
+    near.y.push_back(p.y());
+    near.z.push_back(p.z());
+    near.nx.push_back(n.x());
+    near.ny.push_back(n.y());
+    near.nz.push_back(n.z());
+    near.intensity.push_back(points.intensity[i]);
+  }
+  return near;
+}
+
+struct Tilt {
+  Eigen::Matrix3d R_grid_camera;  ///< at heading 0
+  QueryRays rays;
+};
+
+/// Pixels that show something, as directions; rows count from elevation 0 until lowest is known.
+QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
+                 double step_m) {
+  QueryRays rays;
+  const double bin = shape.bin_rad();
+  for (int v = 0; v < query.depth_m.rows; ++v) {
+    for (int u = 0; u < query.depth_m.cols; ++u) {
+      const float depth = query.depth_m.at<float>(v, u);
+      if (depth <= 0) continue;
+      const Eigen::Vector3d p = R * query.camera.unproject(u, v, depth);
+      const double range = p.norm();
+      if (range > shape.max_range_m) continue;
+      const double elevation = std::asin(p.z() / range), azimuth = std::atan2(p.y(), p.x());
+      rays.row.push_back(static_cast<int>(std::floor(elevation / bin)));
+      rays.column.push_back(
+          std::min(shape.columns() - 1, static_cast<int>(std::floor((azimuth + M_PI) / bin))));
+      rays.range.push_back(static_cast<float>(range));
+      // Along the ray a leaning surface is off by more than across it, within a bin most of all.
+      const double cosine = std::max<double>(kLeastFacing, query.facing.at<float>(v, u));
+      const double across = 0.5 * step_m + 0.5 * bin * range * std::sqrt(1.0 - cosine * cosine) +
+                            3.0 * depthSigma(depth);
+      rays.inverse_tolerance.push_back(static_cast<float>(cosine / across));
+      rays.intensity.push_back(query.intensity.at<float>(v, u));
+    }
+  }
+  return rays;
+}
+
+/// Positions at one height, with one tilt.
+struct Layer {
+  std::size_t tilt = 0;
+  double height_m = 0;
+};
+
+/// The grid and everything that is looked up in it.
+struct Grid {
+  Eigen::Isometry3d T_map_grid;
+  PanoramaShape shape;
+  std::vector<Tilt> tilts;
+  std::vector<Layer> layers;
+  int side = 0;  ///< positions along x and y
+  double step_m = 0;
+
+  std::size_t positions() const { return layers.size() * static_cast<std::size_t>(side * side); }
+  std::size_t poses() const { return positions() * static_cast<std::size_t>(shape.headings); }
+  const Layer& layer(std::size_t position) const {
+    return layers[position / static_cast<std::size_t>(side * side)];
+  }
+  Eigen::Vector3d position(std::size_t i) const {
+    const auto n = static_cast<std::size_t>(side);
+    const auto steps = [&](std::size_t k) { return static_cast<int>(k) - side / 2; };
+    return {step_m * steps(i % n), step_m * steps(i / n % n), layer(i).height_m};
+  }
+  /// Poses are numbered by position and heading.
+  Eigen::Isometry3d pose(std::size_t number) const {
+    const auto headings = static_cast<std::size_t>(shape.headings);
+    const double heading = 2.0 * M_PI * static_cast<double>(number % headings) / shape.headings;
+    const std::size_t i = number / headings;
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+                 tilts[layer(i).tilt].R_grid_camera;
+    T.translation() = position(i);
+    return orthonormalised(T_map_grid * T);
+  }
+};
+
+/// The query's directions for each tilt, rows counted from the lowest.
+void addTilts(const PlaceQuery& query, const std::vector<Eigen::Vector3d>& ups, Grid& grid) {
+  int lowest = 1 << 20, highest = -lowest;
+  for (const Eigen::Vector3d& up : ups) {
+    const Eigen::Matrix3d R = tiltOf(up);
+    grid.tilts.push_back({R, raysOf(query, R, grid.shape, grid.step_m)});
+    for (const int row : grid.tilts.back().rays.row) {
+      lowest = std::min(lowest, row);
+      highest = std::max(highest, row);
+    }
+  }
+  for (Tilt& tilt : grid.tilts) {
+    for (int& row : tilt.rays.row) row -= lowest;
+  }
+  grid.shape.rows = std::max(0, highest - lowest + 1);
+  grid.shape.lowest_rad = static_cast<float>(lowest) * grid.shape.bin_rad();
+}
+
+/// The heights of the configuration with the tilt of the query's own floor (else that of before),
+/// the height at which its floor is that of the map (points in the frame of the grid), and tilt and
+/// height as they were.
+void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearchConfig& config,
+               Grid& grid) {
+  const std::size_t own = grid.tilts.size() - 1;
+  for (const double height_m : config.heights_m) grid.layers.push_back({own, height_m});
+  if (own != 0) grid.layers.push_back({0, 0.0});
+  const auto levels = findLevels(orientedPoints(near), Eigen::Vector3d::UnitZ(), 2 * kSameTilt_rad);
+  if (!levels || !query.floor_m) return;
+  const double height_m = levels->lowest_m + *query.floor_m;
+  const bool known = std::any_of(grid.layers.begin(), grid.layers.end(), [&](const Layer& layer) {
+    return layer.tilt == own && std::abs(layer.height_m - height_m) < kSameHeight_m;
+  });
+  if (!known) grid.layers.push_back({own, height_m});
+}
+
+Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+              const PlaceSearchConfig& config) {
+  Grid grid;
+  const Eigen::Vector3d up_before = around.linear().transpose() * up.normalized();
+  std::vector<Eigen::Vector3d> ups = {up_before};
+  if (query.up && std::acos(std::min(1.0, query.up->dot(up_before))) > kSameTilt_rad) {
+    ups.push_back(*query.up);
+  }
+  grid.T_map_grid = around;
+  grid.T_map_grid.linear() = around.linear() * tiltOf(up_before).transpose();
+  grid.shape.headings = config.headings;
+  grid.shape.phases =
+      std::max(1, static_cast<int>(std::lround(2.0 * M_PI / (config.headings * kBin_rad))));
+  grid.shape.max_range_m = static_cast<float>(config.max_range_m);
+  grid.step_m = config.step_m;
+  grid.side = 2 * static_cast<int>(std::lround(config.reach_m / config.step_m)) + 1;
+  addTilts(query, ups, grid);
+  return grid;
+}
+
+bool isNear(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  const Eigen::Isometry3d step = a.inverse() * b;
+  return step.translation().norm() < kApart_m &&
+         Eigen::AngleAxisd(step.linear()).angle() < kApart_rad;
+}
+
+/// The best poses that are not near a better one.
+std::vector<PlaceCandidate> pickBest(const Grid& grid, const std::vector<PlaceCandidate>& all,
+                                     int most) {
+  std::vector<std::uint32_t> order(all.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  const std::size_t considered = std::min(order.size(), 40 * static_cast<std::size_t>(most));
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(considered),
+                    order.end(), [&](std::uint32_t a, std::uint32_t b) {
+                      return all[a].score != all[b].score ? all[a].score > all[b].score : a < b;
+                    });
+  std::vector<PlaceCandidate> best;
+  for (std::size_t k = 0; k < considered && static_cast<int>(best.size()) < most; ++k) {
+    PlaceCandidate candidate = all[order[k]];
+    if (candidate.score <= 0) break;
+    candidate.T_map_camera = grid.pose(order[k]);
+    const bool taken = std::any_of(best.begin(), best.end(), [&](const PlaceCandidate& b) {
+      return isNear(b.T_map_camera, candidate.T_map_camera);
+    });
+    if (!taken) best.push_back(candidate);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
+                                         const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+                                         const PlaceSearchConfig& config) {
+  Grid grid = makeGrid(query, around, up, config);
+  if (grid.shape.rows == 0) return {};
+  const MapPoints near =
+      cut(points, grid.T_map_grid.inverse(), config.max_range_m + std::sqrt(2.0) * config.reach_m);
+  addLayers(query, near, config, grid);
+  std::vector<PlaceCandidate> all(grid.poses());
+  parallelFor(grid.positions(), 8, [&](std::size_t begin, std::size_t end) {
+    Panorama panorama;
+    HeadingScores scores;
+    const auto headings = static_cast<std::size_t>(grid.shape.headings);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3f p = grid.position(i).cast<float>();
+      panorama.draw(near, p.data(), grid.shape);
+      const QueryRays& rays = grid.tilts[grid.layer(i).tilt].rays;
+      scores.compute(panorama, rays, grid.shape.headings);
+      const float share = 1.0F / static_cast<float>(std::max<std::size_t>(1, rays.size()));
+      for (std::size_t h = 0; h < headings; ++h) {
+        PlaceCandidate& c = all[i * headings + h];
+        c.score = scores.score[h];
+        c.explained = scores.known[h] * share;
+        c.agreeing = scores.agreeing[h] / std::max(1.0F, scores.known[h]);
+        c.correlation = scores.correlation[h];
+      }
+    }
+  });
+  return pickBest(grid, all, config.most);
+}
+
+}  // namespace pf

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/verify.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "posefusion/core/noise.hpp"
+
+namespace pf {
+namespace {
+
+// Rounds of drawing and aligning: the grid's pose may be 10 cm and 5 degrees off, from where the
+// map shows other things than from the right one.
+constexpr int kRounds = 3;
+constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
+constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.06;
+constexpr float kAgreeingSigmas = 4.0F;
+constexpr float kMinNormalCosine = 0.7F;
+// Grey levels are compared in windows of so many pixels: light and exposure change slowly.
+constexpr int kWindow = 16;
+constexpr double kLeastPixels = 0.3;     // of a window
+constexpr double kLeastVariance = 40.0;  // of grey levels: less texture tells nothing
+// Nothing is known before: a prior as wide as the gates.
+constexpr double kPriorShift_m = 0.3, kPriorTurn_rad = 0.3;
+
+Matrix6d widePrior() {
+  Vector6d variance;
+  variance.head<3>().setConstant(kPriorShift_m * kPriorShift_m);
+  variance.tail<3>().setConstant(kPriorTurn_rad * kPriorTurn_rad);
+  return variance.asDiagonal();
+}
+
+/// Sums over a window, for the correlation.
+struct GreySums {
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+
+  void add(double x, double y) { n += 1, a += x, b += y, aa += x * x, bb += y * y, ab += x * y; }
+};
+
+/// The windows' correlations, weighted by their texture; 0 where there is none.
+double correlationOf(const std::vector<GreySums>& windows) {
+  double both = 0, texture = 0;
+  for (const GreySums& w : windows) {
+    if (w.n < kLeastPixels * kWindow * kWindow) continue;
+    const double va = w.aa / w.n - w.a * w.a / (w.n * w.n);
+    const double vb = w.bb / w.n - w.b * w.b / (w.n * w.n);
+    if (std::max(va, vb) < kLeastVariance) continue;
+    const double root = std::sqrt(std::max(0.0, va * vb));
+    both += w.ab / w.n - w.a * w.b / (w.n * w.n);
+    texture += std::max(root, 0.5 * std::max(va, vb));
+  }
+  return texture > 0 ? both / texture : 0.0;
+}
+
+double angleOf(const Eigen::Isometry3d& T) { return logSo3(T.linear()).norm(); }
+
+}  // namespace
+
+std::string_view name(PlaceDoubt doubt) {
+  constexpr std::array<std::string_view, kPlaceDoubts> kNames = {
+      "none",      "little_overlap", "not_converged", "degenerate", "moved_away",
+      "disagrees", "seen_through",   "other_picture", "ambiguous"};
+  return kNames.at(static_cast<std::size_t>(doubt));
+}
+
+PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
+  const FrameLevel& level = frame.levels[0];
+  const int across = (level.depth_m.cols + kWindow - 1) / kWindow;
+  const int down = (level.depth_m.rows + kWindow - 1) / kWindow;
+  std::vector<GreySums> windows(static_cast<std::size_t>(across * down));
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  double valid = 0, known = 0, agreeing = 0, through = 0, hidden = 0;
+  for (int v = 0; v < level.depth_m.rows; ++v) {
+    for (int u = 0; u < level.depth_m.cols; ++u) {
+      const float seen = level.depth_m.at<float>(v, u), model = view.depth_m.at<float>(v, u);
+      if (seen <= 0) continue;
+      ++valid;
+      if (model <= 0) continue;
+      ++known;
+      const float nz = std::min(-0.2F, view.normal_z.at<float>(v, u));
+      const float tolerance = surfaceTolerance(std::max(seen, model), kAgreeingSigmas) / -nz;
+      if (seen > model + tolerance) ++through;
+      if (seen < model - tolerance) ++hidden;
+      if (std::abs(seen - model) > tolerance) continue;
+      const float cosine = level.normal_x.at<float>(v, u) * view.normal_x.at<float>(v, u) +
+                           level.normal_y.at<float>(v, u) * view.normal_y.at<float>(v, u) +
+                           level.normal_z.at<float>(v, u) * view.normal_z.at<float>(v, u);
+      if (level.normal_z.at<float>(v, u) < 0 && cosine < kMinNormalCosine) continue;
+      ++agreeing;
+      const Eigen::Vector3d n(view.normal_x.at<float>(v, u), view.normal_y.at<float>(v, u),
+                              view.normal_z.at<float>(v, u));
+      normals += n * n.transpose();
+      if (level.still.at<std::uint8_t>(v, u) == 0) continue;
+      windows[static_cast<std::size_t>(v / kWindow * across + u / kWindow)].add(
+          level.intensity.at<float>(v, u), view.intensity.at<float>(v, u));
+    }
+  }
+  PlaceAgreement result;
+  result.overlap = known / std::max(1.0, valid);
+  result.agreeing = agreeing / std::max(1.0, known);
+  result.seen_through = through / std::max(1.0, known);
+  result.hidden = hidden / std::max(1.0, known);
+  result.correlation = correlationOf(windows);
+  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals / std::max(1.0, agreeing))
+                      .eigenvalues()[0];
+  return result;
+}
+
+TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
+  TrackingStart start;
+  start.T_map_view = start.T_map_camera = start.prior.T_map_camera = T_map_camera;
+  start.prior.covariance = widePrior();
+  return start;
+}
+
+PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
+                      const VerifyLimits& limits) {
+  const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
+  if (v.agreement.overlap < limits.min_overlap) return PlaceDoubt::little_overlap;
+  if (!v.alignment.converged) return PlaceDoubt::not_converged;
+  // Somebody or something new before the map does not speak against the place, up to a point.
+  const double visible = 1.0 - v.agreement.hidden;
+  if (v.agreement.hidden > limits.max_hidden ||
+      v.agreement.agreeing < limits.min_agreeing * visible) {
+    return PlaceDoubt::disagrees;
+  }
+  if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;
+  const bool has_shape =
+      v.agreement.overlap >= limits.shape_overlap && v.agreement.spread >= limits.shape_spread;
+  const double least = has_shape ? limits.min_correlation_of_shape : limits.min_correlation;
+  if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
+  if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
+  if (step.translation().norm() > limits.max_shift_m || angleOf(step) > limits.max_turn_rad) {
+    return PlaceDoubt::moved_away;
+  }
+  return PlaceDoubt::none;
+}
+
+PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& frame,
+                                   const Eigen::Isometry3d& T_map_candidate) {
+  RenderOptions options;
+  options.age = SurfelAge::all;
+  PlaceVerdict verdict;
+  verdict.alignment.T_map_camera = T_map_candidate;
+  for (int i = 0; i < kRounds; ++i) {
+    const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
+    renderer_.render(map, frame.camera, T, options, view_);
+    model_.assign(view_);
+    TrackingStart start = freeStart(T);
+    start.brightness = verdict.alignment.brightness;
+    verdict.alignment = track(frame, model_, start, tracking_);
+    const Eigen::Isometry3d step = T.inverse() * verdict.alignment.T_map_camera;
+    if (!verdict.alignment.converged && i > 0) break;
+    if (step.translation().norm() < kSettled_m && angleOf(step) < kSettled_rad) break;
+  }
+  renderer_.render(map, frame.camera, verdict.alignment.T_map_camera, options, view_);
+  verdict.agreement = compareViews(frame, view_);
+  verdict.doubt = judgePlace(verdict, T_map_candidate, limits_);
+  return verdict;
+}
+
+PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame& frame,
+                                       const std::vector<PlaceCandidate>& candidates,
+                                       std::size_t most) {
+  PlaceVerdict best;
+  for (std::size_t i = 0; i < std::min(most, candidates.size()); ++i) {
+    const PlaceVerdict verdict = verify(map, frame, candidates[i].T_map_camera);
+    if (i == 0) best = verdict;
+    if (!verdict.accepted() || i == 0) continue;
+    if (best.accepted()) {
+      const Eigen::Isometry3d step =
+          best.alignment.T_map_camera.inverse() * verdict.alignment.T_map_camera;
+      if (step.translation().norm() > kSamePlace_m || angleOf(step) > kSamePlace_rad) {
+        best.doubt = PlaceDoubt::ambiguous;
+        return best;
+      }
+    }
+    if (!best.accepted() || verdict.score() > best.score()) best = verdict;
+  }
+  return best;
+}
+
+}  // namespace pf

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/closer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
+#include "simulated_sequence.hpp"
+
+namespace pf {
+namespace {
+
+constexpr int kViews = 4, kStep = 5;
+
+const SimulatedSequence& room() {
+  static const SimulatedSequence sequence("empty_box", kViews * kStep);
+  return sequence;
+}
+
+WorkingFrame frameOf(int view) {
+  WorkingFrame frame;
+  frame.assign(room().frame(view * kStep).frame, cv::Mat(), FrameConfig{});
+  return frame;
+}
+
+Eigen::Isometry3d poseOf(int view) { return room().pose(view * kStep); }
+
+LoopConfig quick() {
+  LoopConfig config;
+  config.min_gap_keyframes = 2;
+  return config;
+}
+
+/// All views and then the first again; `off` is the error of the later poses.
+std::vector<LoopConstraint> comeBack(LoopCloser& closer, const Eigen::Isometry3d& off) {
+  for (int i = 0; i < kViews; ++i) {
+    closer.addKeyframe(keyframeView(frameOf(i), i, poseOf(i), true));
+  }
+  closer.addKeyframe(keyframeView(frameOf(0), kViews, poseOf(0) * off, true));
+  return closer.findLoops();
+}
+
+TEST(KeyframePair, SeenFromItsOwnPoseAViewIsItself) {
+  const ModelView view = modelViewOf(frameOf(0));
+  const ModelView same = seenFrom(view, Eigen::Isometry3d::Identity());
+  EXPECT_LT(cv::norm(view.depth_m, same.depth_m, cv::NORM_INF), 1e-5);
+  cv::Mat known = view.intensity.clone();
+  known.setTo(0, view.depth_m <= 0);
+  EXPECT_EQ(cv::norm(known, same.intensity, cv::NORM_INF), 0);
+}
+
+TEST(KeyframePair, AlignsToTheTruth) {
+  const Eigen::Isometry3d truth = poseOf(0).inverse() * poseOf(kViews - 1);
+  const PlaceVerdict verdict = alignPair(frameOf(0), frameOf(kViews - 1),
+                                         Eigen::Isometry3d::Identity(), TrackingConfig{}, {});
+  EXPECT_TRUE(verdict.accepted()) << name(verdict.doubt);
+  const Eigen::Isometry3d off = truth.inverse() * verdict.alignment.T_map_camera;
+  EXPECT_LT(off.translation().norm(), 0.03);
+  EXPECT_LT(logSo3(off.linear()).norm(), 0.02);
+}
+
+TEST(LoopCloser, ComingBackGivesTrueConstraints) {
+  LoopCloser closer(quick(), TrackingConfig{});
+  Vector6d drift;
+  drift << 0.1, 0.05, -0.08, 0.05, 0.08, 0.02;
+  const auto loops = comeBack(closer, expSe3(drift));
+  ASSERT_FALSE(loops.empty());
+  for (const LoopConstraint& loop : loops) {
+    EXPECT_EQ(loop.to, kViews);
+    EXPECT_LE(loop.from, kViews - 2);
+    const Eigen::Isometry3d truth = poseOf(static_cast<int>(loop.from)).inverse() * poseOf(0);
+    const Eigen::Isometry3d off = truth.inverse() * loop.T_from_to;
+    EXPECT_LT(off.translation().norm(), 0.05) << loop.from;
+    EXPECT_LT(logSo3(off.linear()).norm(), 0.03) << loop.from;
+    EXPECT_GT(loop.covariance.diagonal().minCoeff(), 0);
+  }
+  const LoopCounts& c = closer.counts();
+  EXPECT_EQ(c.accepted, loops.size());
+  EXPECT_EQ(c.accepted + c.one_way + std::accumulate(c.refused.begin(), c.refused.end(), 0U),
+            c.compared);
+}
+
+TEST(LoopCloser, TheLastKeyframesAreNoLoop) {
+  LoopConfig config;
+  config.min_gap_keyframes = kViews + 1;
+  LoopCloser closer(config, TrackingConfig{});
+  EXPECT_TRUE(comeBack(closer, Eigen::Isometry3d::Identity()).empty());
+  EXPECT_EQ(closer.counts().compared, 0U);
+}
+
+TEST(LoopCloser, FernsAreStoredByTheStaticViewRule) {
+  for (const bool rule : {true, false}) {
+    LoopConfig config = quick();
+    config.static_view_rule = rule;
+    LoopCloser closer(config, TrackingConfig{});
+    closer.addKeyframe(keyframeView(frameOf(0), 0, poseOf(0), false));
+    EXPECT_EQ(closer.counts().ferns, rule ? 0U : 1U);
+    EXPECT_EQ(closer.counts().not_static, rule ? 1U : 0U);
+    closer.addKeyframe(keyframeView(frameOf(0), 1, poseOf(0), true));
+    EXPECT_EQ(closer.counts().ferns, 1U);
+  }
+}
+
+TEST(LoopCloser, RefusesWhatDoesNotFollow) {
+  LoopCloser closer(quick(), TrackingConfig{});
+  closer.addKeyframe(keyframeView(frameOf(0), 3, poseOf(0), true));
+  EXPECT_THROW(closer.addKeyframe(keyframeView(frameOf(0), 3, poseOf(0), true)), InputError);
+  EXPECT_THROW(closer.setPoses({}), InputError);
+}
+
+}  // namespace
+}  // namespace pf

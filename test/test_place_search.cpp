@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/place_search.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion/loop/verify.hpp"
+#include "posefusion/map/fusion.hpp"
+#include "simulated_sequence.hpp"
+
+namespace pf {
+namespace {
+
+/// The small room, mapped at its true poses.
+struct MappedRoom {
+  SimulatedSequence sequence{"empty_box", 12};
+  SurfelMap map{stableAtOnce()};
+  MapPoints points;
+  Eigen::Vector3d up;
+
+  static MapConfig stableAtOnce() {
+    MapConfig config;
+    config.stable_confidence = 2;
+    return config;
+  }
+
+  MappedRoom() {
+    Fuser fuser;
+    for (int i = 0; i < sequence.frameCount(); ++i) fuser.fuse(frame(i), sequence.pose(i), map);
+    points = thinnedPoints(map);
+    const auto levels = findLevels(orientedPoints(points), -Eigen::Vector3d::UnitY(), 0.9);
+    up = levels ? levels->up : Eigen::Vector3d(0, 0, 0);
+  }
+
+  WorkingFrame frame(int index) const {
+    WorkingFrame working;
+    working.assign(sequence.frame(index).frame, cv::Mat(), FrameConfig{});
+    return working;
+  }
+};
+
+const MappedRoom& room() {
+  static const MappedRoom mapped;
+  return mapped;
+}
+
+/// `T` turned about the vertical and shifted horizontally, as by a fall.
+Eigen::Isometry3d afterFall(const Eigen::Isometry3d& T, double turn_rad, double shift_m) {
+  Eigen::Isometry3d moved = T;
+  const Eigen::Vector3d up = room().up;
+  moved.linear() = Eigen::AngleAxisd(turn_rad, up).toRotationMatrix() * T.linear();
+  const Eigen::Vector3d ahead = T.linear().col(2);
+  moved.translation() += shift_m * (ahead - ahead.dot(up) * up).normalized();
+  return moved;
+}
+
+double metresOff(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return (a.translation() - b.translation()).norm();
+}
+
+double radiansOff(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return logSo3(a.linear().transpose() * b.linear()).norm();
+}
+
+TEST(Levels, UpIsThatOfTheRoom) {
+  // The camera of the small room looks a little down: up is not the picture's up.
+  const auto frame_levels = placeQuery(room().frame(11));
+  ASSERT_TRUE(frame_levels.up);
+  const Eigen::Vector3d seen = room().sequence.pose(11).linear() * *frame_levels.up;
+  EXPECT_GT(seen.dot(room().up), std::cos(0.035));
+}
+
+TEST(Levels, NoneWhereNothingFacesUp) {
+  const std::vector<float> zero(100, 0.0F), one(100, 1.0F);
+  const OrientedPoints wall{zero.data(), zero.data(), one.data(), zero.data(),
+                            zero.data(), one.data(),  100};
+  EXPECT_FALSE(findLevels(wall, Eigen::Vector3d::UnitY(), 0.5));
+}
+
+TEST(MapPoints, AreThinAndStable) {
+  const MapPoints& points = room().points;
+  ASSERT_GT(points.size(), 100U);
+  EXPECT_LT(points.size(), room().map.stableCount() / 2);
+  const MapPoints coarse = thinnedPoints(room().map, 0.2);
+  EXPECT_LT(coarse.size(), points.size() / 2);
+}
+
+TEST(PlaceSearch, FindsThePlaceAfterAFall) {
+  const WorkingFrame frame = room().frame(11);
+  const Eigen::Isometry3d truth = room().sequence.pose(11);
+  for (const double turn : {-1.2, 0.4}) {
+    const Eigen::Isometry3d before = afterFall(truth, turn, 0.4);
+    const auto found =
+        searchPlaces(room().points, placeQuery(frame), before, room().up, PlaceSearchConfig{});
+    ASSERT_FALSE(found.empty());
+    EXPECT_LT(metresOff(found[0].T_map_camera, truth), 0.25) << turn;
+    EXPECT_LT(radiansOff(found[0].T_map_camera, truth), 0.175) << turn;
+  }
+}
+
+TEST(PlaceSearch, FindsThePlaceFromBelow) {
+  // Lying: lower by more than the grid's own heights, tilted up.
+  const Eigen::Isometry3d truth = room().sequence.pose(11);
+  Eigen::Isometry3d before = afterFall(truth, 0.3, 0.3);
+  before.translation() += 0.5 * room().up;
+  before.linear() *= Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const auto found = searchPlaces(room().points, placeQuery(room().frame(11)), before, room().up,
+                                  PlaceSearchConfig{});
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(metresOff(found[0].T_map_camera, truth), 0.25);
+  EXPECT_LT(radiansOff(found[0].T_map_camera, truth), 0.175);
+}
+
+TEST(PlaceSearch, CandidatesAreSortedAndApart) {
+  const auto found = searchPlaces(room().points, placeQuery(room().frame(3)),
+                                  room().sequence.pose(0), room().up, PlaceSearchConfig{});
+  ASSERT_GT(found.size(), 1U);
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    EXPECT_GE(found[i - 1].score, found[i].score);
+    EXPECT_LE(found[i].score, 1.5);
+    const Eigen::Isometry3d &a = found[0].T_map_camera, &b = found[i].T_map_camera;
+    EXPECT_TRUE(metresOff(a, b) > 0.19 || radiansOff(a, b) > 0.16);
+  }
+}
+
+TEST(PlaceSearch, GivesNothingOfNothing) {
+  const PlaceQuery query = placeQuery(room().frame(0));
+  const Eigen::Isometry3d T = room().sequence.pose(0);
+  EXPECT_TRUE(searchPlaces(MapPoints{}, query, T, room().up, PlaceSearchConfig{}).empty());
+  PlaceQuery blind = query;
+  blind.depth_m = cv::Mat::zeros(query.depth_m.size(), CV_32FC1);
+  EXPECT_TRUE(searchPlaces(room().points, blind, T, room().up, PlaceSearchConfig{}).empty());
+}
+
+TEST(PlaceSearch, GivesTheSameBitsForAnyNumberOfThreads) {
+  std::vector<PlaceCandidate> found[2];
+  for (int i = 0; i < 2; ++i) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, i == 0 ? 1 : 4);
+    found[i] = searchPlaces(room().points, placeQuery(room().frame(5)), room().sequence.pose(0),
+                            room().up, PlaceSearchConfig{});
+  }
+  ASSERT_EQ(found[0].size(), found[1].size());
+  for (std::size_t i = 0; i < found[0].size(); ++i) {
+    EXPECT_EQ(found[0][i].score, found[1][i].score);
+    EXPECT_EQ(found[0][i].T_map_camera.matrix(), found[1][i].T_map_camera.matrix());
+  }
+}
+
+TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
+  const Eigen::Isometry3d truth = room().sequence.pose(8);
+  Vector6d off;
+  off << 0.05, -0.03, 0.05, 0.03, 0.05, -0.02;
+  PlaceVerifier verifier{TrackingConfig{}};
+  const PlaceVerdict verdict = verifier.verify(room().map, room().frame(8), truth * expSe3(off));
+  EXPECT_TRUE(verdict.accepted()) << name(verdict.doubt);
+  EXPECT_LT(metresOff(verdict.alignment.T_map_camera, truth), 0.02);
+  EXPECT_LT(radiansOff(verdict.alignment.T_map_camera, truth), 0.02);
+}
+
+TEST(VerifyPlace, NoWrongPlaceIsAccepted) {
+  const WorkingFrame frame = room().frame(8);
+  const Eigen::Isometry3d truth = room().sequence.pose(8);
+  PlaceVerifier verifier{TrackingConfig{}};
+  int wrong = 0;
+  for (const double turn : {-0.7, -0.4, 0.4, 0.7}) {
+    for (const double shift : {-0.4, 0.0, 0.4}) {
+      const PlaceVerdict v = verifier.verify(room().map, frame, afterFall(truth, turn, shift));
+      const bool is_true = metresOff(v.alignment.T_map_camera, truth) < 0.1 &&
+                           radiansOff(v.alignment.T_map_camera, truth) < 0.05;
+      EXPECT_TRUE(is_true || !v.accepted()) << turn << " " << shift;
+      wrong += is_true ? 0 : 1;
+    }
+  }
+  EXPECT_GT(wrong, 4);
+}
+
+TEST(VerifyPlace, SeesWhenTheMapsSurfacesAreGone) {
+  // A frame whose walls stand half a metre farther sees through the map.
+  TrueFrame truth = room().sequence.frame(8);
+  cv::add(truth.frame.depth, 500, truth.frame.depth, truth.frame.depth > 0);  // mm
+  WorkingFrame frame;
+  frame.assign(truth.frame, cv::Mat(), FrameConfig{});
+  ModelView view;
+  RenderOptions options;
+  options.age = SurfelAge::all;
+  SurfelRenderer().render(room().map, frame.camera, truth.T_map_camera, options, view);
+  const PlaceAgreement agreement = compareViews(frame, view);
+  EXPECT_GT(agreement.seen_through, 0.8);
+  EXPECT_LT(agreement.agreeing, 0.1);
+}
+
+}  // namespace
+}  // namespace pf
