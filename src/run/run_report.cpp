@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "posefusion/evaluation/track_check.hpp"
 #include "posefusion/io/files.hpp"
@@ -41,6 +42,25 @@ ordered_json framesJson(const FrameCounts& f) {
           {"by_outcome", f.by_outcome}};
 }
 
+/// Table IV of the paper counts ferns and loops.
+ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) {
+  ordered_json refused;
+  for (std::size_t i = 1; i < c.refused.size(); ++i) {
+    refused[std::string(name(static_cast<PlaceDoubt>(i)))] = c.refused[i];
+  }
+  refused["one_way"] = c.one_way;
+  refused["graph"] = corrections.refused;
+  return {{"keyframes", c.keyframes},
+          {"ferns", c.ferns},
+          {"ferns_not_static", c.not_static},
+          {"compared", c.compared},
+          {"accepted", c.accepted},
+          {"corrections", corrections.accepted},
+          {"refused", refused},
+          {"places_searched", c.searched},
+          {"places_found", c.found}};
+}
+
 std::string fixed(double value, int decimals) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(decimals) << value;
@@ -59,6 +79,12 @@ void RunReport::add(const ProcessedFrame& frame) {
   if (!frame.status.located) return;
   camera_ = frame.seen.frame.camera;
   trajectory_.push_back({frame.status.stamp_ns, frame.status.T_map_camera});
+}
+
+void RunReport::setBackEnd(const BackEnd& back_end, const LoopCounts& loops) {
+  live_ = std::exchange(trajectory_, back_end.trajectory());
+  loops_ = loops;
+  corrections_ = back_end.counts();
 }
 
 double RunReport::framesPerSecond() const {
@@ -84,6 +110,7 @@ std::string RunReport::summary(std::size_t surfels) const {
   out["frames"] = framesJson(statistics_.frames());
   out["masks"] = {{"frames", masks.with_mask}, {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
+  out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();
   out["peak_memory_mb"] = peakMemoryMb();
   if (const auto e = errors()) {
@@ -106,6 +133,11 @@ std::string RunReport::summary(std::size_t surfels) const {
 void RunReport::write(const std::string& folder, const SurfelMap& map) const {
   saveTrajectory(folder + "/trajectory.txt", trajectory_,
                  "pose of the camera (optical frame: z forward, x right, y down) in the map");
+  if (!live_.empty()) {
+    saveTrajectory(folder + "/trajectory_live.txt", live_,
+                   "pose of the camera (optical frame: z forward, x right, y down) in the map, as "
+                   "told when the frame came: loops found later do not correct it");
+  }
   const std::size_t surfels = saveMap(folder + "/map.ply", map);
   AtomicFile file(folder + "/summary.json");
   file.stream() << summary(surfels);
@@ -128,6 +160,11 @@ std::string RunReport::table() const {
     out << "         " << std::left << std::setw(20) << name << std::right << std::setw(7)
         << fixed(time.median_ms, 1) << " ms median" << std::setw(7) << fixed(time.p95_ms, 1)
         << " ms 95 %\n";
+  }
+  if (loops_.keyframes > 0) {
+    out << "loops    " << loops_.keyframes << " keyframes, " << loops_.accepted << " loops, "
+        << corrections_.accepted << " corrections; " << loops_.found << " of " << loops_.searched
+        << " lost frames found\n";
   }
   if (const auto e = errors()) {
     out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count << " poses, "

@@ -27,6 +27,8 @@ void visitFields(Config& config, FieldVisitor& visitor) {
   visitGroup("frame", config.frame, visitor);
   visitGroup("tracking", config.tracking, visitor);
   visitGroup("map", config.map, visitor);
+  visitGroup("loop", config.loop, visitor);
+  visitGroup("graph", config.graph, visitor);
 }
 
 void applyYaml(Config& config, const YAML::Node& node, const std::string& origin) {
@@ -68,6 +70,7 @@ void applyMode(Config& config, const std::string& mode) {
   }
   config.blur.enabled = mode == "pfh";
   config.segmentation.enabled = mode != "elastic";
+  config.loop.static_view_rule = mode == "pfh";
   if (mode == "elastic") config.pose.detector = "none";
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace pf {
 namespace {
@@ -33,6 +34,8 @@ constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 // After a loss an alignment has to look better than usual, so often in a row, before it is
 // believed.
 constexpr int kProofs = 10;
+constexpr int kProofsOfPlace = 3;  // where the place was already verified
+constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
 constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
 constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 constexpr int kProbationFrames = 60;
@@ -96,6 +99,8 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
         frame.full_camera);
   }
   const PosePrior prior = predict(location.motion, elapsed_s);
+  T_reckoned_ =
+      orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   Verdict verdict;
   location.tracking = align(frame, prior, location.motion, render, verdict);
   if (forced && verdict.outcome == FrameOutcome::fused) {
@@ -252,14 +257,19 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
 /// other.
 void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
                       std::int64_t stamp_ns, double elapsed_s) {
-  const bool looks_right = location.outcome == FrameOutcome::fused &&
-                           isStrong(location.tracking, frame.valid_pixels, kProvenInliers,
-                                    kProvenOverlap, kProvenSeenThrough);
+  const bool looks_right =
+      location.outcome == FrameOutcome::fused &&
+      (is_place_verified_ || isStrong(location.tracking, frame.valid_pixels, kProvenInliers,
+                                      kProvenOverlap, kProvenSeenThrough));
   const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
                                 kProofStep_m, kProofStep_rad);
-  proofs_ = looks_right ? (follows ? proofs_ + 1 : 1) : 0;
+  // A suggested place is better known than where the camera went from it.
+  const bool fits = follows || std::exchange(is_suggested_, false);
+  proofs_ = looks_right ? (fits ? proofs_ + 1 : 1) : 0;
+  is_place_verified_ = is_place_verified_ && looks_right && fits;
   if (proofs_ >= kProofs) {
     frames_since_return_ = 0;
+    location.is_return = true;
     trust(location, stamp_ns, elapsed_s);
     return;
   }
@@ -273,6 +283,24 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   previous_.velocity.setZero();
   location.state = TrackingState::lost;
   location.T_map_camera = T_map_located_;
+}
+
+void Localiser::move(const Eigen::Isometry3d& T_new_old) {
+  previous_.T_map_camera = T_new_old * previous_.T_map_camera;
+  T_map_located_ = T_new_old * T_map_located_;
+  landmarks_.move(T_new_old);
+}
+
+void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
+                        const Eigen::Isometry3d& T_reckoned) {
+  if (state_ != TrackingState::lost || proofs_ > 0) return;
+  const Eigen::Isometry3d T_map_now = T_map_camera * T_reckoned.inverse() * T_reckoned_;
+  landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
+  previous_.T_map_camera = T_map_now;
+  previous_.covariance = diagonal(kSuggested_m, kSuggested_rad);
+  previous_.velocity.setZero();
+  proofs_ = kProofs - kProofsOfPlace;
+  is_suggested_ = is_place_verified_ = true;
 }
 
 void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,

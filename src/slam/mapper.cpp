@@ -2,8 +2,11 @@
 #include "posefusion/slam/mapper.hpp"
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "posefusion/core/stopwatch.hpp"
+#include "posefusion/map/deform.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -21,7 +24,8 @@ const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
 }  // namespace
 
 struct Mapper::State {
-  explicit State(const Config& c) : config(c), map(c.map), localiser(c.tracking) {}
+  explicit State(const Config& c)
+      : config(c), map(c.map), localiser(c.tracking), back_end(c.graph) {}
 
   Config config;
   SurfelMap map;
@@ -34,11 +38,22 @@ struct Mapper::State {
   Fuser fuser;
   SurfelRenderer renderer;
   std::int64_t last_stamp_ns = kBeforeAll;
+  BackEnd back_end;
+  std::optional<LoopQuestion> question;
+  bool keyframes_moved = false;  ///< since the last question
+  // Of the search for a lost camera.
+  std::shared_ptr<const SurfelMap> map_at_loss;
+  Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
+  bool place_is_asked = false, place_is_stale = false;
 
   std::string defect(const StaticFrame& input) const;
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
+  void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
+  void keep(const StaticFrame& input, const Location& location);
+  void askForPlace();
+  void correct(const std::vector<LoopConstraint>& loops);
 };
 
 /// Why the frame cannot follow the ones before; empty when it can.
@@ -102,9 +117,63 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
                   options.input_depth_m);
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
-  renderer.render(map, frame.camera, location.T_map_camera, kViewOptions, view);
+  showFrom(location.T_map_camera, true);
   view.stamp_ns = last_stamp_ns;
-  model.assign(view, &frame.levels[0]);
+}
+
+/// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
+void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
+  renderer.render(map, frame.camera, T_map_camera, kViewOptions, view);
+  model.assign(view, fill ? &frame.levels[0] : nullptr);
+}
+
+/// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
+void Mapper::State::keep(const StaticFrame& input, const Location& location) {
+  map_at_loss.reset();
+  FusedFrame fused;
+  fused.stamp_ns = last_stamp_ns;
+  fused.map_frame = map.frame();
+  fused.T_map_camera = location.T_map_camera;
+  fused.covariance = location.tracking.covariance;
+  fused.is_return = location.is_return;
+  const int id = back_end.add(fused);
+  if (id < 0 || !config.loop.enabled) return;
+  const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
+  question.emplace();
+  if (std::exchange(keyframes_moved, false)) {
+    question->corrected = back_end.keyframePoses();
+    question->corrected.pop_back();
+  }
+  question->keyframe = keyframeView(frame, id, location.T_map_camera, nobody);
+}
+
+/// Lost: asks where this frame is, unless the answer for one before is still to come.
+void Mapper::State::askForPlace() {
+  const double pixels = static_cast<double>(frame.depth_m.total());
+  if (!config.loop.enabled || place_is_asked ||
+      frame.valid_pixels < config.tracking.min_valid_fraction * pixels) {
+    return;
+  }
+  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
+  question.emplace();
+  question->place = std::make_shared<const PlaceQuestion>(
+      PlaceQuestion{copyOf(frame), map_at_loss, localiser.lastPose()});
+  T_reckoned_at_question = localiser.reckonedPose();
+  place_is_asked = true;
+  place_is_stale = false;
+}
+
+void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
+  const GraphResult result = back_end.close(loops);
+  if (!result.accepted || result.deformation.isIdentity()) return;
+  const Eigen::Isometry3d T_new_old = result.deformation.at(map.frame());
+  deform(map, result.deformation);
+  localiser.move(T_new_old);
+  const bool is_fused = view.stamp_ns == last_stamp_ns;
+  showFrom(T_new_old * view.T_map_camera, is_fused);
+  keyframes_moved = true;
+  map_at_loss.reset();
+  place_is_stale = true;
 }
 
 Mapper::Mapper(const Config& config) : state_(std::make_unique<State>(config)) {}
@@ -120,7 +189,14 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   s.frame.assign(input.frame, input.mask, s.config.frame);
   const Location location = s.locate(input);
   status.tracking_ms = watch.lapMs();
-  if (location.outcome == FrameOutcome::fused) s.fuse(input, location);
+  s.question.reset();
+  if (location.outcome == FrameOutcome::fused) {
+    s.fuse(input, location);
+    s.keep(input, location);
+  } else if (location.state == TrackingState::lost) {
+    s.askForPlace();
+  }
+  if (location.located) s.back_end.record(input.frame.stamp_ns, location.T_map_camera);
   status.fusion_ms = watch.lapMs();
   status.state = location.state;
   status.outcome = location.outcome;
@@ -134,6 +210,23 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   return status;
 }
 
+std::optional<LoopQuestion> Mapper::takeQuestion() {
+  return std::exchange(state_->question, std::nullopt);
+}
+
+void Mapper::take(const LoopAnswer& answer) {
+  State& s = *state_;
+  if (answer.asked_for_place) {
+    s.place_is_asked = false;
+    if (answer.place && !s.place_is_stale) {
+      s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
+    }
+  }
+  if (!answer.loops.empty()) s.correct(answer.loops);
+}
+
+const BackEnd& Mapper::backEnd() const { return state_->back_end; }
+
 FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   FrameStatus status;
   status.stamp_ns = stamp_ns;
@@ -142,6 +235,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.T_map_camera =
       state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
   status.surfels = state_->map.size();
+  status.map_version = state_->back_end.graph().version();
   status.map_full = state_->map.refused() > 0;
   return status;
 }
@@ -170,6 +264,10 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.localiser.reset();
   s.T_map_start = T_map_camera;
   s.last_stamp_ns = kBeforeAll;
+  s.back_end = BackEnd(s.config.graph);
+  s.question.reset();
+  s.keyframes_moved = s.place_is_asked = false;
+  s.map_at_loss.reset();
 }
 
 }  // namespace pf

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/pipeline.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "posefusion/core/stopwatch.hpp"
@@ -12,7 +13,8 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
       gate_(config.blur),
       detector_(std::move(detector)),
       segmenter_(config.segmentation),
-      mapper_(config) {}
+      mapper_(config),
+      loop_thread_(config.loop, config.tracking) {}
 
 SeenFrame Pipeline::see(const RgbdFrame& frame) {
   SeenFrame seen;
@@ -52,7 +54,21 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   still.in_map_mask = out.segmentation.in_map_mask;
   still.input_depth = frame.depth;
   out.status = mapper_.process(still);
+  if (auto question = mapper_.takeQuestion()) {
+    question->number = number_;
+    loop_thread_.ask(std::move(*question));
+  }
+  takeAnswers(number_++);
   return out;
 }
+
+void Pipeline::takeAnswers(std::int64_t number) {
+  while (const auto answer = loop_thread_.due(number)) {
+    mapper_.take(*answer);
+    loop_counts_ = answer->counts;
+  }
+}
+
+void Pipeline::finish() { takeAnswers(std::numeric_limits<std::int64_t>::max()); }
 
 }  // namespace pf

@@ -101,6 +101,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   } catch (...) {
     failure = std::current_exception();
   }
+  pipeline.finish();
   observers.finish(report);
   sayLeftOut(source.report(), progress);
   return failure;
@@ -121,6 +122,7 @@ int run(const RunOptions& options) {
   stopOnSignals();
   TrajectoryJournal journal(options.output + "/" + kJournal, "the run is not finished");
   const auto failure = process(options, *source, pipeline, report, journal);
+  report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
   report.write(options.output, pipeline.mapper().map());
   journal.remove();
   const int signal = stop_requested;

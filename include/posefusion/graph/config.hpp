@@ -7,6 +7,8 @@ namespace pf {
 
 /// Settings of the pose graph.
 struct GraphConfig {
+  double keyframe_distance_m = 0.3;
+  double keyframe_angle_rad = 0.26;
   double odometry_sigma_m = 0.02;
   double odometry_sigma_rad = 0.01;
   double loop_sigma_m = 0.01;
@@ -17,6 +19,9 @@ struct GraphConfig {
 };
 
 inline void visitFields(GraphConfig& c, FieldVisitor& v) {
+  v.number("keyframe_distance_m", c.keyframe_distance_m, 0.01, 100.0,
+           "a frame so far from the last keyframe becomes one");
+  v.number("keyframe_angle_rad", c.keyframe_angle_rad, 0.01, 3.14, "the same of the rotation");
   v.number("odometry_sigma_m", c.odometry_sigma_m, 1e-5, 10.0,
            "drift between two keyframes that tracking does not know of, added to its covariance");
   v.number("odometry_sigma_rad", c.odometry_sigma_rad, 1e-5, 3.0, "the same of the rotation");

@@ -28,6 +28,8 @@ struct LoopCounts {
   std::size_t accepted = 0;
   std::array<std::size_t, kPlaceDoubts> refused{};  ///< by PlaceDoubt
   std::size_t one_way = 0;                          ///< refused: the two directions do not agree
+  std::size_t searched = 0;  ///< frames of a lost camera that were looked for
+  std::size_t found = 0;     ///< of them
 };
 
 /// Finds pairs of keyframes that see the same place. Candidates come from the ferns, from nearness

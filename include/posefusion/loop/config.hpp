@@ -15,6 +15,7 @@ struct LoopConfig {
   int min_gap_keyframes = 10;
   double near_m = 1.5;
   int feature_pairs = 6;
+  int answer_lag_frames = 10;
 };
 
 inline void visitFields(LoopConfig& c, FieldVisitor& v) {
@@ -31,6 +32,9 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
            "keyframes nearer than this are compared by their poses and features");
   v.integer("feature_pairs", c.feature_pairs, 0, 1000,
             "most near keyframes that a keyframe is compared with");
+  v.integer("answer_lag_frames", c.answer_lag_frames, 1, 1000,
+            "frames between a question to the loop closer and its answer, offline and in lossless "
+            "replay");
 }
 
 }  // namespace pf

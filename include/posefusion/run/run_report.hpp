@@ -38,15 +38,20 @@ class RunReport {
   /// Reported as `depth_median_difference_m`.
   void setDepthCheck(const DepthCheck& check) { depth_difference_m_ = check.medianM(); }
 
+  /// The corrected trajectory, and what was done to loops, once all frames were added.
+  void setBackEnd(const BackEnd& back_end, const LoopCounts& loops);
+
   const RunStatistics& statistics() const { return statistics_; }
-  /// The frames that have a pose of their own.
+  /// The frames that have a pose of their own, as they were told at the time; as corrected by loops
+  /// after setBackEnd().
   const Trajectory& trajectory() const { return trajectory_; }
   double framesPerSecond() const;
   /// Nothing without truth, or when fewer than three poses have a true one.
   std::optional<RunErrors> errors() const;
 
-  /// trajectory.txt (TUM format, camera poses of the frames that have one), map.ply, summary.json,
-  /// map.png and people.png. Throws InputError naming the file.
+  /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops),
+  /// trajectory_live.txt (as they were told at the time), map.ply, summary.json, map.png and
+  /// people.png. Throws InputError naming the file.
   void write(const std::string& folder, const SurfelMap& map) const;
 
   /// A few lines for people.
@@ -59,7 +64,10 @@ class RunReport {
   RunStatistics statistics_;
   std::vector<std::int64_t> frames_ns_;  // of all frames that could be read
   Trajectory trajectory_;
+  Trajectory live_;  ///< as told at the time
   Trajectory truth_;
+  LoopCounts loops_;
+  BackEnd::Counts corrections_;
   PeopleStrip strip_;
   PinholeCamera camera_;
   std::optional<double> depth_difference_m_;

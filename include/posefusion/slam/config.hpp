@@ -8,6 +8,8 @@
 #include "posefusion/blur/config.hpp"
 #include "posefusion/config/fields.hpp"
 #include "posefusion/frame/config.hpp"
+#include "posefusion/graph/config.hpp"
+#include "posefusion/loop/config.hpp"
 #include "posefusion/map/config.hpp"
 #include "posefusion/pose/config.hpp"
 #include "posefusion/segmentation/config.hpp"
@@ -28,6 +30,8 @@ struct Config {
   FrameConfig frame;
   TrackingConfig tracking;
   MapConfig map;
+  LoopConfig loop;
+  GraphConfig graph;
 };
 
 /// Lists all fields in order, grouped by stage.

@@ -27,6 +27,7 @@ struct Location {
   TrackingState state = TrackingState::initializing;
   FrameOutcome outcome = FrameOutcome::fused;  ///< `fused`: it may be
   bool located = false;
+  bool is_return = false;         ///< found again with this frame
   bool is_recent_return = false;  ///< found again a short time ago: the map must not lose by it
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
@@ -54,6 +55,17 @@ class Localiser {
   TrackingState state() const { return state_; }
   /// The last pose of a located frame.
   const Eigen::Isometry3d& lastPose() const { return T_map_located_; }
+
+  /// The pose by the corners' motion alone since the beginning: what happens between two frames can
+  /// be told from it even while the camera is lost.
+  const Eigen::Isometry3d& reckonedPose() const { return T_reckoned_; }
+
+  /// Follows a correction of the map.
+  void move(const Eigen::Isometry3d& T_new_old);
+
+  /// While lost: the camera was at `T_map_camera` when reckonedPose() was `T_reckoned`. Believed
+  /// once some frames in a row agree.
+  void suggest(const Eigen::Isometry3d& T_map_camera, const Eigen::Isometry3d& T_reckoned);
 
   void reset() { *this = Localiser(config_); }
 
@@ -91,11 +103,14 @@ class Localiser {
   Previous previous_;
   Landmarks landmarks_;
   Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_reckoned_ = Eigen::Isometry3d::Identity();
   Brightness brightness_;
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that was believed
   int untrusted_in_a_row_ = 0;
   int reckoned_in_a_row_ = 0;  ///< of those, located by dead reckoning
   int proofs_ = 0;             ///< frames in a row that looked right since the loss
+  bool is_suggested_ = false;       ///< the pose comes from a place just found
+  bool is_place_verified_ = false;  ///< and what came since goes on from it
   int frames_since_return_ = 1 << 20;
 };
 

@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "posefusion/core/frame.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
+#include "posefusion/loop/worker.hpp"
+#include "posefusion/slam/back_end.hpp"
 #include "posefusion/slam/config.hpp"
 #include "posefusion/slam/status.hpp"
 
@@ -36,6 +39,17 @@ class Mapper {
   ~Mapper();
 
   FrameStatus process(const StaticFrame& input);
+
+  /// What the frame just processed makes mapping ask the loop closer, once: a new keyframe, or
+  /// where a lost camera is.
+  std::optional<LoopQuestion> takeQuestion();
+
+  /// Takes in an answer: a loop corrects the map and all poses; a place found brings a lost camera
+  /// back, once the next frames agree.
+  void take(const LoopAnswer& answer);
+
+  /// Keyframes, graph, and the poses of all frames as they are known now.
+  const BackEnd& backEnd() const;
 
   /// The status of a frame that is not mapped (blurred, dropped, bad input): the state stays as it
   /// is.

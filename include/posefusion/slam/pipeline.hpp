@@ -8,6 +8,7 @@
 #include "posefusion/pose/detector.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion/slam/config.hpp"
+#include "posefusion/slam/loop_thread.hpp"
 #include "posefusion/slam/mapper.hpp"
 
 namespace pf {
@@ -45,6 +46,11 @@ class Pipeline {
 
   ProcessedFrame process(const RgbdFrame& frame) { return map(see(frame)); }
 
+  /// Takes in what the loop closer still has to say, after the last frame.
+  void finish();
+
+  const LoopCounts& loopCounts() const { return loop_counts_; }
+
   const Mapper& mapper() const { return mapper_; }
 
  private:
@@ -55,6 +61,11 @@ class Pipeline {
   FlowTracker flow_;
   PeopleSegmenter segmenter_;
   Mapper mapper_;
+  LoopThread loop_thread_;
+  LoopCounts loop_counts_;
+  std::int64_t number_ = 0;  ///< of mapped frames
+
+  void takeAnswers(std::int64_t number);
 };
 
 }  // namespace pf

@@ -48,6 +48,7 @@ struct FrameStatus {
   SparseMotion motion;  ///< since the frame before
   std::string detail;   ///< the reason in words
   std::size_t surfels = 0;
+  int map_version = 0;     ///< number of corrections by loops so far
   bool map_full = false;   ///< the memory limit keeps new surfels out
   double tracking_ms = 0;  ///< preprocessing, rendering and alignment
   double fusion_ms = 0;    ///< fusion and cleaning

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posefusion/loop/closer.hpp"
+#include "posefusion/loop/map_points.hpp"
+
+namespace pf {
+
+/// A frame of a lost camera, and the map that it may lie in.
+struct PlaceQuestion {
+  WorkingFrame frame;                    ///< shares no memory with the frame at work
+  std::shared_ptr<const SurfelMap> map;  ///< as it was when the camera was lost
+  Eigen::Isometry3d T_map_last = Eigen::Isometry3d::Identity();  ///< last pose before the loss
+};
+
+/// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
+struct LoopQuestion {
+  std::int64_t number = 0;               ///< of the frame that asks, rising
+  std::optional<KeyframeView> keyframe;  ///< number 0 begins a new map
+  /// Of all keyframes before this one, in their order, when a correction has moved them; else
+  /// empty.
+  std::vector<Eigen::Isometry3d> corrected;
+  std::shared_ptr<const PlaceQuestion> place;
+};
+
+/// What was found.
+struct LoopAnswer {
+  std::int64_t number = 0;            ///< of the question
+  std::vector<LoopConstraint> loops;  ///< of the keyframe
+  bool asked_for_place = false;
+  std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
+  LoopCounts counts;                  ///< since the beginning
+};
+
+/// A copy that shares no image with the original.
+WorkingFrame copyOf(const WorkingFrame& frame);
+
+/// The loop closer's work, question by question: loops of keyframes, and a lost camera's place by
+/// drawing the map around the last pose before the loss (searchPlaces) and verifying the best
+/// candidates. The answers depend on the questions and their order alone. Not thread safe; may work
+/// beside the mapper.
+class LoopWorker {
+ public:
+  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking);
+
+  LoopAnswer answer(const LoopQuestion& question);
+
+ private:
+  std::optional<PlaceVerdict> findPlace(const PlaceQuestion& question);
+
+  LoopConfig config_;
+  TrackingConfig tracking_;
+  LoopCloser closer_;
+  PlaceVerifier verifier_;
+  LoopCounts counts_;
+  // Of the map that was last searched in.
+  std::shared_ptr<const SurfelMap> map_;
+  MapPoints points_;
+  Eigen::Vector3d up_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace pf

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "posefusion/core/trajectory.hpp"
+#include "posefusion/graph/pose_graph.hpp"
+#include "posefusion/loop/closer.hpp"
+
+namespace pf {
+
+/// A frame that was fused, as the graph takes it.
+struct FusedFrame {
+  std::int64_t stamp_ns = 0;
+  std::int32_t map_frame = 0;  ///< SurfelMap::frame() that its surfels have
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
+  bool is_return = false;  ///< found again: tied to the nearest keyframe, not to the last
+};
+
+/// The keyframes, the graph that ties them, and the poses that hang on them. A frame's pose is kept
+/// relative to the last keyframe before it, so that a correction moves all. Not thread safe.
+class BackEnd {
+ public:
+  explicit BackEnd(const GraphConfig& config) : config_(config), graph_(config) {}
+
+  /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1.
+  int add(const FusedFrame& frame);
+
+  /// Keeps the pose of a located frame (fused or not); nothing before the first keyframe.
+  void record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera);
+
+  /// Closes loops between keyframes; says what became of it.
+  GraphResult close(const std::vector<LoopConstraint>& loops);
+
+  /// The poses of all recorded frames as they are known now.
+  Trajectory trajectory() const;
+
+  const PoseGraph& graph() const { return graph_; }
+  /// The poses of the keyframes, in their order.
+  std::vector<Eigen::Isometry3d> keyframePoses() const;
+
+  struct Counts {
+    std::size_t accepted = 0;  ///< corrections of the graph
+    std::size_t refused = 0;   ///< loops that do not fit with the others
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  int nearest(const Eigen::Isometry3d& T_map_camera) const;
+
+  struct Recorded {
+    std::int64_t stamp_ns = 0;
+    RelativePose pose;
+  };
+
+  GraphConfig config_;
+  PoseGraph graph_;
+  std::vector<Recorded> frames_;
+  Counts counts_;
+};
+
+}  // namespace pf

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/loop/worker.hpp"
+
+namespace pf {
+namespace {
+
+// Where no floor was mapped, the camera's own idea of up before the loss has to do.
+constexpr double kUpright_rad = 0.7;
+
+}  // namespace
+
+WorkingFrame copyOf(const WorkingFrame& frame) {
+  WorkingFrame copy = frame;
+  for (cv::Mat* image : {&copy.depth_m, &copy.beyond_m, &copy.color, &copy.full_depth_m}) {
+    *image = image->clone();
+  }
+  for (FrameLevel& level : copy.levels) {
+    for (cv::Mat* plane : {&level.depth_m, &level.normal_x, &level.normal_y, &level.normal_z,
+                           &level.intensity, &level.still}) {
+      *plane = plane->clone();
+    }
+  }
+  return copy;
+}
+
+LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking)
+    : config_(config), tracking_(tracking), closer_(config, tracking), verifier_(tracking) {}
+
+LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
+  LoopAnswer answer;
+  answer.number = question.number;
+  if (!question.corrected.empty()) closer_.setPoses(question.corrected);
+  if (question.keyframe) {
+    if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
+    closer_.addKeyframe(*question.keyframe);
+    answer.loops = closer_.findLoops();
+  }
+  if (question.place) {
+    answer.asked_for_place = true;
+    answer.place = findPlace(*question.place);
+    ++counts_.searched;
+    counts_.found += answer.place ? 1 : 0;
+  }
+  answer.counts = closer_.counts();
+  answer.counts.searched = counts_.searched;
+  answer.counts.found = counts_.found;
+  return answer;
+}
+
+std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
+  if (map_ != question.map) {
+    map_ = question.map;
+    points_ = thinnedPoints(*map_);
+    const Eigen::Vector3d upright = question.T_map_last.linear() * -Eigen::Vector3d::UnitY();
+    const auto levels = findLevels(orientedPoints(points_), upright, kUpright_rad);
+    up_ = levels ? levels->up : upright;
+  }
+  if (points_.size() == 0) return std::nullopt;
+  const PlaceQuery query = placeQuery(question.frame);
+  const auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
+  if (candidates.empty()) return std::nullopt;
+  PlaceVerdict verdict = verifier_.verifyBest(*map_, question.frame, candidates);
+  if (!verdict.accepted()) return std::nullopt;
+  return verdict;
+}
+
+}  // namespace pf

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/back_end.hpp"
+
+#include <limits>
+
+#include "posefusion/core/se3.hpp"
+
+namespace pf {
+
+/// The keyframe that saw the map from about this pose.
+int BackEnd::nearest(const Eigen::Isometry3d& T_map_camera) const {
+  int nearest = 0;
+  double least = std::numeric_limits<double>::max();
+  for (const Keyframe& keyframe : graph_.keyframes()) {
+    const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * T_map_camera;
+    const double far = step.translation().norm() + logSo3(step.linear()).norm();
+    if (far >= least) continue;
+    least = far;
+    nearest = keyframe.id;
+  }
+  return nearest;
+}
+
+int BackEnd::add(const FusedFrame& frame) {
+  Keyframe keyframe;
+  keyframe.stamp_ns = frame.stamp_ns;
+  keyframe.map_frame = frame.map_frame;
+  keyframe.T_map_camera = frame.T_map_camera;
+  if (graph_.keyframes().empty()) return graph_.addKeyframe(keyframe);
+  if (frame.is_return) {
+    return graph_.addKeyframe(keyframe, nearest(frame.T_map_camera), frame.covariance);
+  }
+  const Keyframe& last = graph_.keyframes().back();
+  const Eigen::Isometry3d step = last.T_map_camera.inverse() * frame.T_map_camera;
+  const bool is_new = step.translation().norm() > config_.keyframe_distance_m ||
+                      logSo3(step.linear()).norm() > config_.keyframe_angle_rad;
+  return is_new ? graph_.addKeyframe(keyframe, last.id, frame.covariance) : -1;
+}
+
+void BackEnd::record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera) {
+  if (graph_.keyframes().empty()) return;
+  const Keyframe& last = graph_.keyframes().back();
+  frames_.push_back({stamp_ns, {last.id, last.T_map_camera.inverse() * T_map_camera}});
+}
+
+GraphResult BackEnd::close(const std::vector<LoopConstraint>& loops) {
+  for (const LoopConstraint& loop : loops) {
+    graph_.addLoop({static_cast<int>(loop.from), static_cast<int>(loop.to), loop.T_from_to,
+                    loop.covariance, ConstraintKind::loop});
+  }
+  GraphResult result = graph_.optimise();
+  counts_.accepted += result.accepted ? 1 : 0;
+  counts_.refused += result.refused.size();
+  return result;
+}
+
+Trajectory BackEnd::trajectory() const {
+  Trajectory poses;
+  poses.reserve(frames_.size());
+  for (const Recorded& frame : frames_)
+    poses.push_back({frame.stamp_ns, graph_.poseOf(frame.pose)});
+  return poses;
+}
+
+std::vector<Eigen::Isometry3d> BackEnd::keyframePoses() const {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(graph_.keyframes().size());
+  for (const Keyframe& keyframe : graph_.keyframes()) poses.push_back(keyframe.T_map_camera);
+  return poses;
+}
+
+}  // namespace pf
