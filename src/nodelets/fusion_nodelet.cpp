@@ -57,7 +57,7 @@ class FusionNodelet : public ChainNodelet {
     map_frame_ = poses.map_frame;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     mapper_ = std::make_unique<pf::Mapper>(config);
-    saver_ = std::make_unique<MapSaver>(parameters.text("output", ""));
+    saver_ = std::make_unique<MapSaver>(readMapSaver(parameters));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
 
@@ -154,7 +154,7 @@ class FusionNodelet : public ChainNodelet {
   void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
     const pf::StampedPose pose{status.stamp_ns, status.T_map_camera};
     trajectory_.push_back(pose);
-    const std::string unwritten = saver_->note(pose);
+    const std::string unwritten = saver_->note(pose, mapper_->map());
     if (!unwritten.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unwritten.c_str());
     std::string note;
     if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
@@ -178,19 +178,18 @@ class FusionNodelet : public ChainNodelet {
 
   /// The bag is played again: what there was is kept in a folder of its own.
   void startAnew() {
-    if (saver_->isOn() && !trajectory_.empty()) {
-      try {
-        NODELET_INFO("%s", saver_->saveBeforeReset(mapper_->map(), trajectory_).c_str());
-      } catch (const std::exception& error) {  // the new map is worth more than the old one
-        NODELET_ERROR("the map before the jump is lost: %s", error.what());
-      }
+    try {
+      const std::string said = saver_->beginAnew(mapper_->map(), trajectory_);
+      if (!said.empty()) NODELET_INFO("%s", said.c_str());
+    } catch (const std::exception& error) {  // the new map is worth more than the old one
+      NODELET_ERROR("the map before the jump is lost: %s", error.what());
+      saver_->abandon();
     }
     clear();
   }
 
   void clear() {
     mapper_->reset();
-    saver_->discard();
     pose_output_->reset();
     map_output_->reset();
     trajectory_.clear();
@@ -204,16 +203,22 @@ class FusionNodelet : public ChainNodelet {
 
   bool onReset(Trigger::Request&, Trigger::Response& response) {
     const auto task = [this] {
+      std::string said = saver_->beginAnew(mapper_->map(), trajectory_);
       clear();
       map_output_->publishView(mapper_->view(), last_, true);
-      return std::string("the map is empty, the next frame begins a new one");
+      return said + (said.empty() ? "" : "; ") +
+             "the map is empty, the next frame begins a new one";
     };
     return answer(task, response);
   }
 
   bool answer(const std::function<std::string()>& task, Trigger::Response& response) {
     answerTrigger([this](const auto& work) { return worker_->post(work); }, task, response);
-    NODELET_INFO("%s", response.message.c_str());
+    if (response.success) {
+      NODELET_INFO("%s", response.message.c_str());
+    } else {
+      NODELET_ERROR("%s", response.message.c_str());
+    }
     return true;
   }
 

@@ -2,9 +2,11 @@
 // What becomes of a map: saved, emptied, begun anew.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
@@ -41,71 +43,163 @@ class ChainSaving : public testing::Test {
     }
   }
 
+  /// The folders of the runs in order, besides the link to the latest.
+  std::vector<std::string> runs(const std::string& output = "out") const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / output)) {
+      if (!entry.is_symlink()) found.push_back(entry.path().string());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  static std::size_t posesOf(const std::string& file) { return pf::loadTrajectory(file).size(); }
+
   const pf::TemporaryFolder folder;
   std::optional<Chain> chain;
 };
 
-TEST_F(ChainSaving, ResetEmptiesTheMapAndSaveTellsWhere) {
+TEST_F(ChainSaving, ResetKeepsTheMapAndSaveTellsWhere) {
   load("services", folder / "out");
-  const auto empty = chain->call("save_map");
-  EXPECT_TRUE(empty.success);
-  EXPECT_NE(empty.message.find("nothing to save"), std::string::npos);
   std::uint64_t grown = 0;
   for (int i = 0; i < 3; ++i) grown = process(i).surfels;
   EXPECT_GT(grown, 0U);
   const auto saved = chain->call("save_map");
   EXPECT_TRUE(saved.success);
-  EXPECT_NE(saved.message.find(folder / "out"), std::string::npos) << saved.message;
-  EXPECT_TRUE(std::filesystem::exists(folder / "out/map.ply"));
+  EXPECT_NE(saved.message.find(runs().front()), std::string::npos) << saved.message;
+  process(3);
+  const auto kept = chain->call("reset");
+  EXPECT_TRUE(kept.success);
+  EXPECT_NE(kept.message.find("(4 poses) in " + runs().front()), std::string::npos) << kept.message;
   EXPECT_TRUE(chain->call("reset").success);
-  EXPECT_TRUE(chain->call("reset").success);
-  const auto again = process(3);
+  const auto again = process(4);
   EXPECT_EQ(outcome(again), TrackingStatusMsg::FUSED);
   EXPECT_NEAR(again.pose.position.x, 0, 1e-9) << "a new map begins";
   chain->unload();
-  EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 1U)
-      << "the new map was saved at the end";
+  ASSERT_EQ(runs().size(), 2U) << "a folder for each map";
+  EXPECT_EQ(posesOf(runs()[0] + "/trajectory.txt"), 4U);
+  EXPECT_TRUE(std::filesystem::exists(runs()[0] + "/map.ply"));
+  EXPECT_EQ(posesOf(runs()[1] + "/trajectory.txt"), 1U) << "saved at the end";
+  EXPECT_EQ(posesOf(folder / "out/latest/trajectory.txt"), 1U);
 }
 
-TEST_F(ChainSaving, AnOutputThatCannotBeWrittenIsAnAnswerNotACrash) {
-  std::ofstream(folder / "file") << "in the way";
-  load("unwritable", folder / "file");
+TEST_F(ChainSaving, SavingNothingIsNoSuccessAndLeavesNothing) {
+  load("nothing", folder / "out");
   process(0);
-  const auto response = chain->call("save_map");
-  EXPECT_FALSE(response.success);
-  EXPECT_NE(response.message.find(folder / "file"), std::string::npos) << response.message;
-  EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::FUSED);
+  ASSERT_TRUE(chain->call("reset").success);
+  const std::string map = pf::readFile(folder / "out/latest/map.ply");
+  const auto empty = chain->call("save_map");
+  EXPECT_FALSE(empty.success);
+  EXPECT_NE(empty.message.find("nothing to save"), std::string::npos);
   chain->unload();
+  EXPECT_EQ(runs().size(), 1U);
+  EXPECT_EQ(pf::readFile(folder / "out/latest/map.ply"), map);
+}
+
+TEST_F(ChainSaving, ASecondSessionWritesOverNothingOfTheFirst) {
+  for (const int frames : {3, 1}) {
+    load("session_" + std::to_string(frames), folder / "out");
+    for (int i = 0; i < frames; ++i) process(i);
+    chain->unload();
+    chain.reset();
+  }
+  ASSERT_EQ(runs().size(), 2U);
+  EXPECT_EQ(posesOf(runs()[0] + "/trajectory.txt"), 3U);
+  EXPECT_EQ(posesOf(runs()[1] + "/trajectory.txt"), 1U);
+}
+
+TEST_F(ChainSaving, OnRequestOnlyNothingIsWrittenUnasked) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.str());
+  load("on_request", "");
+  process(0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.str()));
+  EXPECT_TRUE(chain->call("save_map").success);
+  ASSERT_TRUE(chain->call("reset").success);
+  process(1);
+  process(2);
+  EXPECT_TRUE(chain->call("save_map").success);
+  chain->unload();
+  std::filesystem::current_path(here);
+  ASSERT_EQ(runs("posefusion_output").size(), 2U);
+  EXPECT_EQ(posesOf(runs("posefusion_output")[0] + "/trajectory.txt"), 1U);
+}
+
+TEST_F(ChainSaving, AnOutputThatCannotBeWrittenEndsTheStart) {
+  std::ofstream(folder / "file") << "in the way";
+  chain.emplace("unwritable");
+  chain->set("output", folder / "file");
+  chain->load(Chain::nodelets());
+  EXPECT_FALSE(ros::service::exists("/unwritable/fusion/save_map", false));
+  chain->unload();
+}
+
+TEST_F(ChainSaving, AFailedSaveIsAnAnswerAndResetKeepsTheMap) {
+  load("failing", folder / "out");
+  process(0);
+  std::filesystem::create_directories(runs().front() + "/map.ply/in the way");
+  for (const std::string service : {"save_map", "reset"}) {
+    const auto response = chain->call(service);
+    EXPECT_FALSE(response.success);
+    EXPECT_NE(response.message.find(runs().front() + "/map.ply"), std::string::npos)
+        << response.message;
+  }
+  EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::FUSED);
+  std::filesystem::remove_all(runs().front() + "/map.ply");
+  chain->unload();
+  EXPECT_EQ(posesOf(folder / "out/latest/trajectory.txt"), 2U) << "nothing was emptied";
 }
 
 TEST_F(ChainSaving, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
-  load("jump", folder.str());
+  load("jump", folder / "out");
   playWithAJumpBack();
   ASSERT_TRUE(chain->call("save_map").success);
-  EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 5), "1050.");
-  EXPECT_EQ(posesIn(folder / "before_reset_1/trajectory.txt").substr(0, 5), "1100.");
+  ASSERT_EQ(runs().size(), 2U);
+  EXPECT_EQ(posesIn(runs()[0] + "/trajectory.txt").substr(0, 5), "1100.");
+  EXPECT_EQ(posesIn(runs()[1] + "/trajectory.txt").substr(0, 5), "1050.");
   chain->unload();
+}
+
+TEST_F(ChainSaving, OfMapsEndedUnaskedANumberIsKept) {
+  chain.emplace("kept");
+  chain->set("output", folder / "out");
+  chain->set("maps_kept", 2);
+  ASSERT_TRUE(chain->load());
+  for (const int later_s : {90, 80, 70, 60, 50}) {
+    EXPECT_EQ(outcome(process(0, later_s)), TrackingStatusMsg::FUSED);
+  }
+  chain->unload();
+  ASSERT_EQ(runs().size(), 3U) << "two, and the one that was saved at the end";
+  std::set<std::string> begins;
+  for (const auto& run : runs()) begins.insert(posesIn(run + "/trajectory.txt").substr(0, 5));
+  EXPECT_EQ(begins, (std::set<std::string>{"1070.", "1060.", "1050."}));
 }
 
 TEST_F(ChainSaving, ATimeJumpBeginsANewMapEvenWhereTheOldOneCannotBeKept) {
-  std::ofstream(folder / "before_reset_1") << "in the way of the folder";
-  load("jump_unsaved", folder.str());
+  load("jump_unsaved", folder / "out");
+  std::filesystem::create_directories(runs().front() + "/map.ply/in the way");
   playWithAJumpBack();
   chain->unload();
-  EXPECT_EQ(posesIn(folder / "trajectory.txt").substr(0, 5), "1050.");
-  EXPECT_EQ(posesIn(folder / "trajectory.partial.txt.old").substr(0, 5), "1100.")
+  ASSERT_EQ(runs().size(), 2U);
+  EXPECT_EQ(posesIn(runs()[1] + "/trajectory.txt").substr(0, 5), "1050.");
+  EXPECT_EQ(posesIn(runs()[0] + "/trajectory.partial.txt").substr(0, 5), "1100.")
       << "at least the poses of the old map are kept";
 }
 
-TEST_F(ChainSaving, PosesAreOnTheDiskAsTheyCome) {
-  load("journal", folder / "out");
+TEST_F(ChainSaving, PosesAreOnTheDiskAsTheyComeAndTheMapNowAndThen) {
+  chain.emplace("journal");
+  chain->set("output", folder / "out");
+  chain->set("save_period_s", 1e-3);
+  ASSERT_TRUE(chain->load());
   for (int i = 0; i < 3; ++i) {
     process(i);
-    EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.partial.txt").size(), i + 1U);
+    EXPECT_EQ(posesOf(runs().front() + "/trajectory.partial.txt"), i + 1U);
   }
+  EXPECT_TRUE(
+      Chain::waitUntil([&] { return std::filesystem::exists(folder / "out/latest/map.ply"); }));
   chain->unload();
-  EXPECT_EQ(pf::loadTrajectory(folder / "out/trajectory.txt").size(), 3U);
-  EXPECT_FALSE(std::filesystem::exists(folder / "out/trajectory.partial.txt"));
+  EXPECT_EQ(posesOf(folder / "out/latest/trajectory.txt"), 3U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/latest/trajectory.partial.txt"));
 }
 
 }  // namespace

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/run_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "temporary_folder.hpp"
+
+namespace pf {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(RunFolder, NoTwoRunsShareOne) {
+  const TemporaryFolder folder;
+  std::set<std::string> paths;
+  for (int i = 0; i < 5; ++i) {
+    const RunFolder run(folder / "output");
+    EXPECT_TRUE(fs::is_empty(run.path())) << "the trial file is gone";
+    EXPECT_TRUE(paths.insert(run.path()).second) << run.path();
+  }
+}
+
+TEST(RunFolder, LatestLeadsToTheRunThatSaidSoLast) {
+  const TemporaryFolder folder;
+  for (const std::string text : {"first", "second"}) {
+    const RunFolder run(folder / "output");
+    std::ofstream(run.file("map.ply")) << text;
+    run.makeLatest();
+    EXPECT_EQ(readFile(folder / "output/latest/map.ply"), text);
+  }
+  fs::rename(folder / "output", folder / "moved");
+  EXPECT_EQ(readFile(folder / "moved/latest/map.ply"), "second") << "the link is a relative one";
+}
+
+TEST(RunFolder, AFolderCalledLatestIsLeftAlone) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "latest");
+  std::ofstream(folder / "latest/map.ply") << "the user's";
+  RunFolder(folder.str()).makeLatest();
+  EXPECT_EQ(readFile(folder / "latest/map.ply"), "the user's");
+}
+
+TEST(RunFolder, LeavesNothingWhereNothingWasWritten) {
+  const TemporaryFolder folder;
+  RunFolder(folder / "output").removeIfEmpty();
+  EXPECT_FALSE(fs::exists(folder / "output"));
+  const RunFolder run(folder / "output");
+  std::ofstream(run.file("map.ply")) << "a map";
+  run.removeIfEmpty();
+  EXPECT_TRUE(fs::exists(run.file("map.ply")));
+}
+
+TEST(RunFolder, WhatCannotBeWrittenIsNamed) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "file") << "in the way";
+  for (const std::string& path : {folder / "file", folder / "file/below", std::string("/proc/x")}) {
+    try {
+      const RunFolder run(path);
+      FAIL() << path;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(RunFolder, LowSpaceIsSaid) {
+  const TemporaryFolder folder;
+  const RunFolder run(folder / "output");
+  EXPECT_EQ(run.lowSpace(0), "");
+  const std::string said = run.lowSpace(1e15);
+  EXPECT_NE(said.find(run.path()), std::string::npos) << said;
+  EXPECT_NE(said.find("MB"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace pf
