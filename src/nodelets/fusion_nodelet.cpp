@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "posefusion/slam/loop_thread.hpp"
 #include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/conversions.hpp"
@@ -38,7 +39,7 @@ class FusionNodelet : public ChainNodelet {
     reset_service_.shutdown();
     worker_.reset();
     if (!saver_ || !saver_->isOn()) return;  // start() may have failed anywhere
-    const std::string said = saver_->finish(mapper_->map(), trajectory_);
+    const std::string said = saver_->finish(mapper_->map(), trajectory());
     // The log is closed already when the whole manager ends.
     std::printf("%s: %s\n", getName().c_str(), said.c_str());
     std::fflush(stdout);
@@ -51,12 +52,15 @@ class FusionNodelet : public ChainNodelet {
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
-    const pf::Config config = parameters.config({"frame", "tracking", "map"});
+    const pf::Config config = parameters.config({"frame", "tracking", "map", "loop", "graph"});
     const bool lossless = parameters.flag("lossless", false);
     const PoseOutputSettings poses = readPoseOutput(parameters, lossless);
     map_frame_ = poses.map_frame;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     mapper_ = std::make_unique<pf::Mapper>(config);
+    loops_ = std::make_unique<pf::LoopThread>(
+        config.loop, config.tracking,
+        lossless ? pf::AnswerTime::after_lag : pf::AnswerTime::when_ready);
     saver_ = std::make_unique<MapSaver>(readMapSaver(parameters));
     map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
@@ -142,6 +146,7 @@ class FusionNodelet : public ChainNodelet {
     input.flow = fromMessage(*flow);
     input.forced = blur->forced != 0;
     const FrameStatus status = mapper_->process(input);
+    loops_->serve(*mapper_);
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     std::string reason = reasonOf(status);
     if (status.located) publishPose(color->header, status, reason);
@@ -153,7 +158,6 @@ class FusionNodelet : public ChainNodelet {
   /// Keeps and publishes the pose of a located frame; what goes wrong is added to `reason`.
   void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
     const pf::StampedPose pose{status.stamp_ns, status.T_map_camera};
-    trajectory_.push_back(pose);
     const std::string unwritten = saver_->note(pose, mapper_->map());
     if (!unwritten.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unwritten.c_str());
     std::string note;
@@ -179,7 +183,7 @@ class FusionNodelet : public ChainNodelet {
   /// The bag is played again: what there was is kept in a folder of its own.
   void startAnew() {
     try {
-      const std::string said = saver_->beginAnew(mapper_->map(), trajectory_);
+      const std::string said = saver_->beginAnew(mapper_->map(), trajectory());
       if (!said.empty()) NODELET_INFO("%s", said.c_str());
     } catch (const std::exception& error) {  // the new map is worth more than the old one
       NODELET_ERROR("the map before the jump is lost: %s", error.what());
@@ -190,12 +194,15 @@ class FusionNodelet : public ChainNodelet {
 
   void clear() {
     mapper_->reset();
+    loops_->reset();
     pose_output_->reset();
     map_output_->reset();
-    trajectory_.clear();
   }
 
-  std::string save() { return saver_->save(mapper_->map(), trajectory_); }
+  /// Of the located frames, as loops have corrected them.
+  pf::Trajectory trajectory() const { return mapper_->backEnd().trajectory(); }
+
+  std::string save() { return saver_->save(mapper_->map(), trajectory()); }
 
   bool onSave(Trigger::Request&, Trigger::Response& response) {
     return answer([this] { return save(); }, response);
@@ -203,7 +210,7 @@ class FusionNodelet : public ChainNodelet {
 
   bool onReset(Trigger::Request&, Trigger::Response& response) {
     const auto task = [this] {
-      std::string said = saver_->beginAnew(mapper_->map(), trajectory_);
+      std::string said = saver_->beginAnew(mapper_->map(), trajectory());
       clear();
       map_output_->publishView(mapper_->view(), last_, true);
       return said + (said.empty() ? "" : "; ") +
@@ -225,7 +232,7 @@ class FusionNodelet : public ChainNodelet {
   std::string map_frame_;
   std::unique_ptr<MapSaver> saver_;
   std::unique_ptr<pf::Mapper> mapper_;
-  pf::Trajectory trajectory_;
+  std::unique_ptr<pf::LoopThread> loops_;
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;

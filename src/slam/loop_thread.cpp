@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/loop_thread.hpp"
 
+#include <chrono>
 #include <utility>
+
+#include "posefusion/slam/mapper.hpp"
 
 namespace pf {
 
+LoopThread::LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time)
+    : lag_frames_(config.answer_lag_frames),
+      time_(time),
+      worker_(std::make_shared<LoopWorker>(config, tracking)) {}
+
+void LoopThread::serve(Mapper& mapper) {
+  if (auto question = mapper.takeQuestion()) ask(std::move(*question));
+  while (isDue()) takeOne(mapper);
+  ++number_;
+}
+
+void LoopThread::finish(Mapper& mapper) {
+  while (!asked_.empty()) takeOne(mapper);
+}
+
+void LoopThread::reset() { asked_.clear(); }
+
 void LoopThread::ask(LoopQuestion question) {
+  question.number = number_;
   // Each question waits for the one before: the worker sees them in their order.
-  const std::shared_future<LoopAnswer> before =
-      asked_.empty() ? std::shared_future<LoopAnswer>() : asked_.back().answer;
-  const std::int64_t number = question.number;
-  auto work = [worker = worker_, before, question = std::move(question)] {
+  auto work = [worker = worker_, before = last_, question = std::move(question)] {
     if (before.valid()) before.wait();
     return worker->answer(question);
   };
-  asked_.push_back({number, std::async(std::launch::async, std::move(work)).share()});
+  last_ = std::async(std::launch::async, std::move(work)).share();
+  asked_.push_back({number_, last_});
 }
 
-std::optional<LoopAnswer> LoopThread::due(std::int64_t number) {
-  if (asked_.empty() || number < asked_.front().number + lag_frames_) return std::nullopt;
+bool LoopThread::isDue() const {
+  if (asked_.empty()) return false;
+  const Asked& first = asked_.front();
+  if (time_ == AnswerTime::after_lag) return number_ >= first.number + lag_frames_;
+  return first.answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+void LoopThread::takeOne(Mapper& mapper) {
   const std::shared_future<LoopAnswer> answer = asked_.front().answer;
   asked_.pop_front();
-  return answer.get();
+  mapper.take(answer.get());
+  counts_ = answer.get().counts;
 }
 
 }  // namespace pf

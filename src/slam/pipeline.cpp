@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/pipeline.hpp"
 
-#include <limits>
 #include <utility>
 
 #include "posefusion/core/stopwatch.hpp"
@@ -14,7 +13,7 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
       detector_(std::move(detector)),
       segmenter_(config.segmentation),
       mapper_(config),
-      loop_thread_(config.loop, config.tracking) {}
+      loop_thread_(config.loop, config.tracking, AnswerTime::after_lag) {}
 
 SeenFrame Pipeline::see(const RgbdFrame& frame) {
   SeenFrame seen;
@@ -54,21 +53,8 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   still.in_map_mask = out.segmentation.in_map_mask;
   still.input_depth = frame.depth;
   out.status = mapper_.process(still);
-  if (auto question = mapper_.takeQuestion()) {
-    question->number = number_;
-    loop_thread_.ask(std::move(*question));
-  }
-  takeAnswers(number_++);
+  loop_thread_.serve(mapper_);
   return out;
 }
-
-void Pipeline::takeAnswers(std::int64_t number) {
-  while (const auto answer = loop_thread_.due(number)) {
-    mapper_.take(*answer);
-    loop_counts_ = answer->counts;
-  }
-}
-
-void Pipeline::finish() { takeAnswers(std::numeric_limits<std::int64_t>::max()); }
 
 }  // namespace pf

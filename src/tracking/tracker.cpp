@@ -22,11 +22,11 @@ constexpr double kCostNoise = 0.01;
 constexpr float kRobustScale = 3.0F;
 // Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
 // map's ripples): so many pixels of the finest level say as much as one independent measurement.
-constexpr double kPixelsPerMeasurement = 800.0;
+constexpr double kPixelsPerMeasurement = 600.0;
 // Error of a normal (rad) per relative error of depth: a normal comes from some pixels'
 // differences. Directions with less information than its square times that of the best-known one
 // are fixed by noise alone.
-constexpr double kNormalNoise = 28.0;
+constexpr double kNormalNoise = 14.0;
 // Without a measured prior there is nothing better to decide: only what is plainly free counts as
 // free.
 constexpr double kBlindNormalNoise = 7.0;

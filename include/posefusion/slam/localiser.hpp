@@ -107,8 +107,8 @@ class Localiser {
   Brightness brightness_;
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that was believed
   int untrusted_in_a_row_ = 0;
-  int reckoned_in_a_row_ = 0;  ///< of those, located by dead reckoning
-  int proofs_ = 0;             ///< frames in a row that looked right since the loss
+  int reckoned_in_a_row_ = 0;       ///< of those, located by dead reckoning
+  int proofs_ = 0;                  ///< frames in a row that looked right since the loss
   bool is_suggested_ = false;       ///< the pose comes from a place just found
   bool is_place_verified_ = false;  ///< and what came since goes on from it
   int frames_since_return_ = 1 << 20;

@@ -4,26 +4,38 @@
 #include <cstdint>
 #include <deque>
 #include <future>
+#include <memory>
 #include <optional>
 
 #include "posefusion/loop/worker.hpp"
 
 namespace pf {
 
-/// Runs a LoopWorker in a thread of its own. An answer is due a fixed number of frames after its
-/// question, so that what comes of it does not depend on the speed of the machine. The owner's
-/// thread alone may call it.
+class Mapper;
+
+/// When answers are taken.
+enum class AnswerTime {
+  after_lag,  ///< so many frames after the question, waited for: the same on every machine
+  when_ready  ///< live: nobody waits
+};
+
+/// Runs the loop closer in a thread of its own, beside a mapper: hands on what the mapper asks, and
+/// the answers. Its owner's thread alone may call it.
 class LoopThread {
  public:
-  LoopThread(const LoopConfig& config, const TrackingConfig& tracking)
-      : lag_frames_(config.answer_lag_frames),
-        worker_(std::make_shared<LoopWorker>(config, tracking)) {}
+  LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time);
 
-  void ask(LoopQuestion question);
+  /// After each frame of the mapper. What the closer threw is thrown here; it goes on afterwards.
+  void serve(Mapper& mapper);
 
-  /// The next answer that is due after frame `number`, which is waited for; call until there is
-  /// none. What the worker threw is thrown here.
-  std::optional<LoopAnswer> due(std::int64_t number);
+  /// After the last frame: waits for all answers and hands them on.
+  void finish(Mapper& mapper);
+
+  /// Forgets what is still unanswered; for a mapper that was reset.
+  void reset();
+
+  /// As of the last answer.
+  const LoopCounts& counts() const { return counts_; }
 
  private:
   struct Asked {
@@ -31,9 +43,17 @@ class LoopThread {
     std::shared_future<LoopAnswer> answer;
   };
 
+  void ask(LoopQuestion question);
+  bool isDue() const;
+  void takeOne(Mapper& mapper);
+
   int lag_frames_;
+  AnswerTime time_;
   std::shared_ptr<LoopWorker> worker_;
+  std::shared_future<LoopAnswer> last_;  ///< of the newest question
   std::deque<Asked> asked_;
+  std::int64_t number_ = 0;  ///< of the frame
+  LoopCounts counts_;
 };
 
 }  // namespace pf

@@ -47,9 +47,9 @@ class Pipeline {
   ProcessedFrame process(const RgbdFrame& frame) { return map(see(frame)); }
 
   /// Takes in what the loop closer still has to say, after the last frame.
-  void finish();
+  void finish() { loop_thread_.finish(mapper_); }
 
-  const LoopCounts& loopCounts() const { return loop_counts_; }
+  const LoopCounts& loopCounts() const { return loop_thread_.counts(); }
 
   const Mapper& mapper() const { return mapper_; }
 
@@ -62,10 +62,6 @@ class Pipeline {
   PeopleSegmenter segmenter_;
   Mapper mapper_;
   LoopThread loop_thread_;
-  LoopCounts loop_counts_;
-  std::int64_t number_ = 0;  ///< of mapped frames
-
-  void takeAnswers(std::int64_t number);
 };
 
 }  // namespace pf
