@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/back_end.hpp"
+
+#include <gtest/gtest.h>
+
+#include "posefusion/core/se3.hpp"
+
+namespace pf {
+namespace {
+
+Eigen::Isometry3d along(double x_m, double turn_rad = 0) {
+  Eigen::Isometry3d T(Eigen::Translation3d(x_m, 0, 0));
+  T.linear() = expSo3({0, turn_rad, 0});
+  return T;
+}
+
+FusedFrame fusedAt(int number, const Eigen::Isometry3d& T) {
+  FusedFrame frame;
+  frame.stamp_ns = number;
+  frame.map_frame = number;
+  frame.T_map_camera = T;
+  frame.covariance = 1e-6 * Matrix6d::Identity();
+  return frame;
+}
+
+TEST(BackEnd, MakesAKeyframeOfWhatMovedOrTurned) {
+  BackEnd back_end{GraphConfig{}};
+  EXPECT_EQ(back_end.add(fusedAt(0, along(0))), 0);
+  EXPECT_EQ(back_end.add(fusedAt(1, along(0.2))), -1);
+  EXPECT_EQ(back_end.add(fusedAt(2, along(0.35))), 1);
+  EXPECT_EQ(back_end.add(fusedAt(3, along(0.36, 0.2))), -1);
+  EXPECT_EQ(back_end.add(fusedAt(4, along(0.36, 0.3))), 2);
+  EXPECT_EQ(back_end.graph().constraints().size(), 2U);
+}
+
+TEST(BackEnd, AReturnIsTiedToTheNearestKeyframe) {
+  BackEnd back_end{GraphConfig{}};
+  for (int i = 0; i < 6; ++i) back_end.add(fusedAt(i, along(0.5 * i)));
+  FusedFrame found = fusedAt(9, along(1.05));
+  found.is_return = true;
+  EXPECT_EQ(back_end.add(found), 6) << "a keyframe, however near";
+  const PoseConstraint& tie = back_end.graph().constraints().back();
+  EXPECT_EQ(tie.from, 2);
+  EXPECT_EQ(tie.to, 6);
+}
+
+TEST(BackEnd, PosesFollowTheirKeyframes) {
+  // Ten steps of half a metre that were measured 2 cm too long each; the last keyframe sees that it
+  // is a full 4.5 m from the first.
+  BackEnd back_end{GraphConfig{}};
+  for (int i = 0; i < 10; ++i) {
+    back_end.add(fusedAt(2 * i, along(0.52 * i)));
+    back_end.record(2 * i, along(0.52 * i));
+    back_end.record(2 * i + 1, along(0.52 * i + 0.1));
+  }
+  EXPECT_NEAR(back_end.trajectory().back().T_world_camera.translation().x(), 4.78, 1e-9);
+  LoopConstraint loop;
+  loop.from = 0;
+  loop.to = 9;
+  loop.T_from_to = along(4.5);
+  loop.covariance = 1e-6 * Matrix6d::Identity();
+  const GraphResult result = back_end.close({loop});
+  ASSERT_TRUE(result.accepted) << result.reason;
+  EXPECT_EQ(back_end.counts().accepted, 1U);
+  const Trajectory poses = back_end.trajectory();
+  ASSERT_EQ(poses.size(), 20U);
+  EXPECT_NEAR(poses[18].T_world_camera.translation().x(), 4.5, 0.03);
+  for (std::size_t i = 0; i + 1 < poses.size(); i += 2) {
+    const Eigen::Isometry3d step = poses[i].T_world_camera.inverse() * poses[i + 1].T_world_camera;
+    EXPECT_NEAR(step.translation().x(), 0.1, 1e-9) << "a frame keeps its place by its keyframe";
+  }
+}
+
+TEST(BackEnd, KeepsNothingBeforeTheFirstKeyframe) {
+  BackEnd back_end{GraphConfig{}};
+  back_end.record(1, along(0));
+  EXPECT_TRUE(back_end.trajectory().empty());
+  EXPECT_FALSE(back_end.close({}).accepted);
+}
+
+}  // namespace
+}  // namespace pf
