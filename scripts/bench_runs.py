@@ -81,14 +81,15 @@ class Runs(Report):
         marker.write_text(wanted)
         return folder
 
-    def walk_run(self, scenario, seed, people, duration=None):
+    def walk_run(self, scenario, seed, people, duration=None, loops=True):
         """(sequence, output folder, summary) of a run over a simulated sequence; `people` are
-        "recorded" or found by the "network"."""
+        "recorded" or found by the "network"; without `loops` nothing is ever found again."""
         sequence = self.simulated(scenario, seed, duration)
         detector = self.network_arguments() if people == "network" else ("--detector", people)
-        name = f"{sequence.name}_{people}_run"
+        name = f"{sequence.name}_{people}_run" if loops else f"{sequence.name}_{people}_open_run"
         status = self.output / name / "status.csv"
-        return sequence, *self.run(name, sequence, *detector, "--save-status", status)
+        settings = () if loops else ("--set", "loop.enabled=false")
+        return sequence, *self.run(name, sequence, *detector, *settings, "--save-status", status)
 
     def wrong_row(self, name, summary):
         self.row(f"{name}, wrong poses", summary["wrong_poses"], "", 0, digits=0)
