@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/localiser.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace pf {
@@ -15,16 +13,6 @@ constexpr double kNanosecond = 1e-9;
 constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
 constexpr double kMaxExtrapolation_s = 0.2;
-// Alignment and prediction agree when their difference is within so many standard deviations
-// (squared; 6 degrees of freedom, 1 in 50000 by chance), or small anyway.
-constexpr double kMaxMahalanobis2 = 30.0;
-constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
-// Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
-// follow a person who was not masked. Not so for a step that no robot makes between two frames.
-constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
-constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
-// Part of the model's points that a frame may see through: things are moved, people were fused.
-constexpr double kMaxSeenThrough = 0.25;
 // Dead reckoning: for how long, and at what speed, corners alone give a pose good enough to be
 // told.
 constexpr double kMaxReckoning_s = 0.6;
@@ -36,7 +24,6 @@ constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 constexpr int kProofs = 10;
 constexpr int kProofsOfPlace = 3;  // where the place was already verified
 constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
-constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
 constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 constexpr int kProbationFrames = 60;
 
@@ -45,30 +32,6 @@ Matrix6d diagonal(double sigma_m, double sigma_rad) {
   variance.head<3>().setConstant(sigma_m * sigma_m);
   variance.tail<3>().setConstant(sigma_rad * sigma_rad);
   return variance.asDiagonal();
-}
-
-bool isWithin(const Eigen::Isometry3d& step, double shift_m, double turn_rad) {
-  return step.translation().norm() <= shift_m && logSo3(step.linear()).norm() <= turn_rad;
-}
-
-std::string percentOf(double part, double whole, const char* what) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.0f %% %s", whole > 0 ? 100.0 * part / whole : 0.0, what);
-  return text;
-}
-
-std::string stepText(const Eigen::Isometry3d& step, const char* what) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
-                logSo3(step.linear()).norm() * 180.0 / M_PI, what);
-  return text;
-}
-
-/// Is the alignment good enough to be believed without, or against, other evidence?
-bool isStrong(const TrackingResult& r, int valid_pixels, double inliers, double overlap,
-              double seen_through) {
-  return r.converged && r.free_directions == 0 && r.inliers >= inliers * r.candidates &&
-         r.candidates >= overlap * valid_pixels && r.seen_through <= seen_through * r.candidates;
 }
 
 }  // namespace
@@ -151,7 +114,7 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
     const RenderedModel model = render(guess);
     const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm};
     const TrackingResult result = track(frame, model.points, start, config_);
-    const Verdict found = judge(frame, result, prior, motion);
+    const Verdict found = judge(frame, result, prior, motion, config_);
     const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
     if (!better) return false;
     best = result;
@@ -171,40 +134,6 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
   }
   attempt(previous_.T_map_camera, false);
   return best;
-}
-
-Localiser::Verdict Localiser::judge(const WorkingFrame& frame, const TrackingResult& r,
-                                    const PosePrior& prior, const SparseMotion& motion) const {
-  const double pixels = static_cast<double>(frame.depth_m.total());
-  if (r.candidates < config_.min_valid_fraction * pixels) {
-    return {FrameOutcome::few_inliers,
-            percentOf(r.candidates, pixels, "of the pixels have a model")};
-  }
-  if (!r.converged) return {FrameOutcome::not_converged, ""};
-  if (r.inliers < config_.min_inlier_fraction * r.candidates) {
-    return {FrameOutcome::few_inliers, percentOf(r.inliers, r.candidates, "of the model agree")};
-  }
-  if (r.seen_through > kMaxSeenThrough * r.candidates) {
-    return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
-  }
-  if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
-  const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
-  if (isWithin(difference, kAgreeing_m, kAgreeing_rad)) return {};
-  const std::string text = stepText(difference, "from the prediction");
-  // Anything may have happened where nothing was measured: the images alone have to prove it.
-  if (!motion.found &&
-      !isStrong(r, frame.valid_pixels, kProvenInliers, kProvenOverlap, kProvenSeenThrough)) {
-    return {FrameOutcome::jumped, text};
-  }
-  const Vector6d error = logSe3(difference);
-  const Matrix6d covariance = prior.covariance + r.covariance;
-  if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
-  if (!motion.found) return {FrameOutcome::jumped, text};
-  const bool overruled =
-      isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
-      isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad);
-  if (overruled) return {};
-  return {FrameOutcome::disagrees, text};
 }
 
 void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_s) {
@@ -257,10 +186,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
 /// other.
 void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
                       std::int64_t stamp_ns, double elapsed_s) {
-  const bool looks_right =
-      location.outcome == FrameOutcome::fused &&
-      (is_place_verified_ || isStrong(location.tracking, frame.valid_pixels, kProvenInliers,
-                                      kProvenOverlap, kProvenSeenThrough));
+  const bool looks_right = location.outcome == FrameOutcome::fused &&
+                           (is_place_verified_ || isProof(location.tracking, frame.valid_pixels));
   const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
                                 kProofStep_m, kProofStep_rad);
   // A suggested place is better known than where the camera went from it.
@@ -305,9 +232,10 @@ void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
 
 void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
                          const Location& location, std::int64_t stamp_ns) {
-  const Eigen::Isometry3d step = previous_.T_map_camera * prior.T_map_camera.inverse();
   // Overruled, or found elsewhere: the landmarks come along.
-  if (!isWithin(step, kAgreeing_m, kAgreeing_rad)) landmarks_.move(step);
+  if (!agree(prior.T_map_camera, previous_.T_map_camera)) {
+    landmarks_.move(previous_.T_map_camera * prior.T_map_camera.inverse());
+  }
   landmarks_.update(flow, frame.full_depth_m, frame.full_camera, previous_.T_map_camera,
                     location.outcome == FrameOutcome::fused);
   const FrameLevel& coarse = frame.levels[kLevels - 1];

@@ -7,6 +7,7 @@
 
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/slam/status.hpp"
+#include "posefusion/slam/verdict.hpp"
 #include "posefusion/tracking/rotation.hpp"
 #include "posefusion/tracking/tracker.hpp"
 
@@ -70,10 +71,6 @@ class Localiser {
   void reset() { *this = Localiser(config_); }
 
  private:
-  struct Verdict {
-    FrameOutcome outcome = FrameOutcome::fused;
-    std::string detail;
-  };
   /// The frame before: what the next prediction starts from.
   struct Previous {
     std::int64_t stamp_ns = 0;
@@ -89,8 +86,6 @@ class Localiser {
   TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
                        const SparseMotion& motion, const ModelRenderer& render,
                        Verdict& verdict) const;
-  Verdict judge(const WorkingFrame& frame, const TrackingResult& result, const PosePrior& prior,
-                const SparseMotion& motion) const;
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/verdict.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstdio>
+
+namespace pf {
+namespace {
+
+// Alignment and prediction agree when their difference is within so many standard deviations
+// (squared; 6 degrees of freedom, 1 in 50000 by chance), or small anyway.
+constexpr double kMaxMahalanobis2 = 30.0;
+constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
+// Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
+// follow a person who was not masked. Not so for a step that no robot makes between two frames.
+constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
+constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
+// Part of the model's points that a frame may see through: things are moved, people were fused.
+constexpr double kMaxSeenThrough = 0.25;
+// What has to prove itself must look better than usual.
+constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
+
+std::string stepText(const Eigen::Isometry3d& step, const char* what) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
+                logSo3(step.linear()).norm() * 180.0 / M_PI, what);
+  return text;
+}
+
+/// Enough agreement, of enough of the frame, with little seen through?
+bool isStrong(const TrackingResult& r, int valid_pixels, double inliers, double overlap,
+              double seen_through) {
+  return r.converged && r.free_directions == 0 && r.inliers >= inliers * r.candidates &&
+         r.candidates >= overlap * valid_pixels && r.seen_through <= seen_through * r.candidates;
+}
+
+}  // namespace
+
+std::string percentOf(double part, double whole, const char* what) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.0f %% %s", whole > 0 ? 100.0 * part / whole : 0.0, what);
+  return text;
+}
+
+bool isWithin(const Eigen::Isometry3d& step, double shift_m, double turn_rad) {
+  return step.translation().norm() <= shift_m && logSo3(step.linear()).norm() <= turn_rad;
+}
+
+bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return isWithin(a.inverse() * b, kAgreeing_m, kAgreeing_rad);
+}
+
+bool isProof(const TrackingResult& result, int valid_pixels) {
+  return isStrong(result, valid_pixels, kProvenInliers, kProvenOverlap, kProvenSeenThrough);
+}
+
+Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrior& prior,
+              const SparseMotion& motion, const TrackingConfig& config) {
+  const double pixels = static_cast<double>(frame.depth_m.total());
+  if (r.candidates < config.min_valid_fraction * pixels) {
+    return {FrameOutcome::few_inliers,
+            percentOf(r.candidates, pixels, "of the pixels have a model")};
+  }
+  if (!r.converged) return {FrameOutcome::not_converged, ""};
+  if (r.inliers < config.min_inlier_fraction * r.candidates) {
+    return {FrameOutcome::few_inliers, percentOf(r.inliers, r.candidates, "of the model agree")};
+  }
+  if (r.seen_through > kMaxSeenThrough * r.candidates) {
+    return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
+  }
+  if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
+  const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
+  if (agree(prior.T_map_camera, r.T_map_camera)) return {};
+  const std::string text = stepText(difference, "from the prediction");
+  // Anything may have happened where nothing was measured: the images alone have to prove it.
+  if (!motion.found && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
+  const Vector6d error = logSe3(difference);
+  const Matrix6d covariance = prior.covariance + r.covariance;
+  if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
+  if (!motion.found) return {FrameOutcome::jumped, text};
+  const bool overruled =
+      isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
+      isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad);
+  if (overruled) return {};
+  return {FrameOutcome::disagrees, text};
+}
+
+}  // namespace pf
