@@ -34,4 +34,7 @@ std::unique_ptr<pf::FrameSource> openBag(const std::string& path, const InputOpt
 std::unique_ptr<pf::FrameSource> openInput(const std::string& path,
                                            const InputOptions& options = {});
 
+/// The frame_id of the first colour image; empty for a TUM folder. Throws as openInput().
+std::string recordedFrameId(const std::string& path, const BagTopics& topics);
+
 }  // namespace posefusion_ros

@@ -24,7 +24,7 @@ constexpr int kInternalQueue = 100;
 class ChainNodelet : public nodelet::Nodelet {
  protected:
   /// Reads parameters, advertises, makes the stage, subscribes last. What it throws is logged, and
-  /// the nodelet stays idle.
+  /// the nodelet stays idle, or ends the process where `~end_on_error` says that it is ours alone.
   virtual void start() = 0;
 
   /// Gives a frame up. The reason is logged (throttled) where `outcome` is worth a warning.
@@ -33,7 +33,7 @@ class ChainNodelet : public nodelet::Nodelet {
   /// Calls `work` for the frame of `header`; what it throws is logged and the frame is given up.
   void guarded(const std_msgs::Header& header, const std::function<void()>& work);
 
-  /// Logs the parameters in force, and warns of those that nobody knows.
+  /// Logs the parameters that are not the defaults, and warns of those that nobody knows.
   void report(const Parameters& parameters);
 
   /// Calls `action` once `ready` is true: looks every 50 ms, in the nodelet's serial queue. A stage

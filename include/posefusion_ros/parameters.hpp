@@ -20,6 +20,9 @@ struct Range {
   double max = 0.0;
 };
 
+/// A private parameter of each nodelet of the chain, which unknown() leaves out: see ChainNodelet.
+constexpr char kEndOnError[] = "end_on_error";
+
 /// The private parameters of one nodelet: its own ones, and the groups of pf::Config
 /// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by
 /// unknown(). Errors are InputError naming parameter, value and what was expected.
@@ -36,7 +39,8 @@ class Parameters {
   std::string choice(const std::string& name, const std::string& fallback,
                      const std::vector<std::string>& words);
 
-  /// The chain's configuration: defaults, then the groups, then `mode` where it is not empty.
+  /// The chain's configuration: defaults, then the file that `config` names, then the groups, then
+  /// `mode`; each where it is not empty.
   /// `groups` are those that this nodelet uses, for effective().
   pf::Config config(const std::vector<std::string>& groups);
 
@@ -46,14 +50,17 @@ class Parameters {
   /// All that was asked for with the values in force, "name=value name=value".
   std::string effective() const { return effective_.str(); }
 
+  /// Of these, those that are not the defaults, as a sentence.
+  std::string changed() const;
+
  private:
   template <typename Value>
-  Value note(const std::string& name, const Value& value);
+  Value note(const std::string& name, const Value& value, const Value& fallback);
 
   YAML::Node tree_;
   std::string origin_;
   pf::YamlMap values_;  ///< of tree_
-  std::ostringstream effective_;
+  std::ostringstream effective_, changed_;
 };
 
 /// A parameter tree as YAML, for the loader that files and command lines use too.

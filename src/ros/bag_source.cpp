@@ -3,6 +3,8 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <rosbag/view.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/Image.h>
 
 #include <algorithm>
 #include <cmath>
@@ -222,6 +224,19 @@ std::unique_ptr<pf::FrameSource> openInput(const std::string& path, const InputO
     return pf::openTumFolder(path, options.camera_file);
   }
   return openBag(path, options);
+}
+
+std::string recordedFrameId(const std::string& path, const BagTopics& topics) {
+  if (std::filesystem::is_directory(path)) return {};
+  return reading(path, [&] {
+    rosbag::Bag bag(path, rosbag::bagmode::Read);
+    rosbag::View colors(bag, rosbag::TopicQuery(chooseTopics(topicsOf(bag), topics).color));
+    if (colors.size() == 0) return std::string();
+    const rosbag::MessageInstance first = *colors.begin();
+    if (const auto image = first.instantiate<sensor_msgs::Image>()) return image->header.frame_id;
+    const auto compressed = first.instantiate<sensor_msgs::CompressedImage>();
+    return compressed ? compressed->header.frame_id : std::string();
+  });
 }
 
 }  // namespace posefusion_ros

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/chain_nodelet.hpp"
 
+#include <ros/init.h>
+
 #include <boost/make_shared.hpp>
 #include <utility>
 
@@ -24,7 +26,11 @@ void ChainNodelet::onInit() {
     rejected_ = getNodeHandle().advertise<TrackingStatusMsg>(topics::kRejected, kRejectedQueue);
     start();
   } catch (const std::exception& error) {
-    NODELET_FATAL("stays idle: %s", error.what());
+    bool end = false;
+    getPrivateNodeHandle().param(kEndOnError, end, false);
+    NODELET_FATAL("%s: %s", end ? "cannot start" : "stays idle", error.what());
+    // The manager is that of the launch file alone where this is set.
+    if (end) ros::requestShutdown();
   }
 }
 
@@ -50,7 +56,8 @@ void ChainNodelet::guarded(const std_msgs::Header& header, const std::function<v
 }
 
 void ChainNodelet::report(const Parameters& parameters) {
-  NODELET_INFO("%s", parameters.effective().c_str());
+  NODELET_INFO("%s", parameters.changed().c_str());
+  NODELET_DEBUG("%s", parameters.effective().c_str());
   for (const std::string& name : parameters.unknown()) {
     NODELET_WARN("unknown parameter %s: it has no effect", name.c_str());
   }

@@ -59,39 +59,51 @@ Parameters::Parameters(XmlRpc::XmlRpcValue values, std::string origin)
       values_(tree_, "parameter " + origin_ + "/") {}
 
 template <typename Value>
-Value Parameters::note(const std::string& name, const Value& value) {
+Value Parameters::note(const std::string& name, const Value& value, const Value& fallback) {
   effective_ << (effective_.tellp() > 0 ? " " : "") << name << "=" << value;
+  if (value != fallback) changed_ << " " << name << "=" << value;
   return value;
+}
+
+std::string Parameters::changed() const {
+  const std::string list = changed_.str();
+  return list.empty() ? "all settings are the defaults" : "settings besides the defaults:" + list;
 }
 
 bool Parameters::flag(const std::string& name, bool fallback) {
   const bool value = values_.flag(name, fallback);
-  note(name, std::string(value ? "true" : "false"));
+  const auto word = [](bool is_true) { return std::string(is_true ? "true" : "false"); };
+  note(name, word(value), word(fallback));
   return value;
 }
 
 int Parameters::integer(const std::string& name, int fallback, const Range& range) {
-  return note(name, values_.integer(name, fallback, static_cast<int>(range.min),
-                                    static_cast<int>(range.max)));
+  return note(
+      name,
+      values_.integer(name, fallback, static_cast<int>(range.min), static_cast<int>(range.max)),
+      fallback);
 }
 
 double Parameters::number(const std::string& name, double fallback, const Range& range) {
-  return note(name, values_.number(name, fallback, range.min, range.max));
+  return note(name, values_.number(name, fallback, range.min, range.max), fallback);
 }
 
 std::string Parameters::text(const std::string& name, const std::string& fallback) {
   const std::string value = values_.text(name, fallback);
-  note(name, "'" + value + "'");
+  note(name, "'" + value + "'", "'" + fallback + "'");
   return value;
 }
 
 std::string Parameters::choice(const std::string& name, const std::string& fallback,
                                const std::vector<std::string>& words) {
-  return note(name, values_.word(name, fallback, words));
+  return note(name, values_.word(name, fallback, words), fallback);
 }
 
 pf::Config Parameters::config(const std::vector<std::string>& groups) {
   pf::Config config;
+  const auto defaults = pf::listFields(config);
+  const std::string file = text("config", "");
+  if (!file.empty()) pf::applyFile(config, file);
   YAML::Node tree(YAML::NodeType::Map);
   for (const auto& entry : tree_) {
     if (!entry.second.IsMap()) continue;
@@ -101,15 +113,20 @@ pf::Config Parameters::config(const std::vector<std::string>& groups) {
   pf::applyYaml(config, tree, "parameters of " + origin_);
   const std::string mode = text("mode", "");
   if (!mode.empty()) pf::applyMode(config, mode);
-  for (const auto& [key, value] : pf::listFields(config)) {
+  const auto fields = pf::listFields(config);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto& [key, value] = fields[i];
     const std::string group = key.substr(0, key.find('.'));
-    if (std::find(groups.begin(), groups.end(), group) != groups.end()) note(key, value);
+    if (std::find(groups.begin(), groups.end(), group) != groups.end()) {
+      note(key, value, defaults[i].second);
+    }
   }
   return config;
 }
 
 std::vector<std::string> Parameters::unknown() const {
   std::vector<std::string> names = values_.unread();
+  names.erase(std::remove(names.begin(), names.end(), kEndOnError), names.end());
   for (auto& name : names) name.insert(0, origin_ + "/");
   return names;
 }

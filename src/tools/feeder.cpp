@@ -13,15 +13,16 @@
 #include <memory>
 #include <thread>
 
+#include "feeder_settings.hpp"
 #include "posefusion/core/error.hpp"
-#include "posefusion_ros/bag_source.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/credit_window.hpp"
 #include "posefusion_ros/latency.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/node_control.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transform_replay.hpp"
+#include "posefusion_ros/transforms.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -33,42 +34,18 @@ using std::chrono::steady_clock;
 // In real time the chain may lose a frame without a word; silence then ends the replay.
 constexpr double kQuiet_s = 5.0;
 constexpr int kQueue = 100;
-
-struct FeederSettings {
-  bool lossless = true;
-  int window = 2;
-  double rate = 1.0;
-  double timeout_s = 60.0;
-  int max_frames = 0;
-  bool tf = false;
-  std::string frame_id;
-  InputOptions input;
-};
-
-FeederSettings readSettings() {
-  Parameters parameters{ros::NodeHandle("~")};
-  FeederSettings s;
-  s.lossless = parameters.flag("lossless", s.lossless);
-  s.window = parameters.integer("window", s.window, {1, 1000});
-  s.rate = parameters.number("rate", s.rate, {1e-3, 1e3});
-  s.timeout_s = parameters.number("timeout_s", s.timeout_s, {0.1, 1e6});
-  s.max_frames = parameters.integer("max_frames", s.max_frames, {0, 1e9});
-  s.tf = parameters.flag("tf", s.tf);
-  s.frame_id = parameters.text("frame_id", frames::kOptical);
-  s.input.camera_file = parameters.text("camera_file", "");
-  s.input.topics.color = parameters.text("color_topic", "");
-  s.input.topics.depth = parameters.text("depth_topic", "");
-  s.input.topics.camera_info = parameters.text("camera_info_topic", "");
-  for (const std::string& name : parameters.unknown()) {
-    ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
-  }
-  return s;
-}
+constexpr std::chrono::seconds kChainPatience(15);  // until its process is there
+constexpr double kEndPatience_s = 60;               // a large map takes its time to be saved
+constexpr std::chrono::seconds kStayPatience(10);   // until rviz is there
 
 class Feeder {
  public:
   Feeder(const std::string& input, const FeederSettings& settings)
       : settings_(settings), source_(openInput(input, settings.input)), spinner_(1) {
+    if (settings_.frame_id.empty()) {
+      settings_.frame_id = plainFrame(recordedFrameId(input, settings.input.topics));
+    }
+    if (settings_.frame_id.empty()) settings_.frame_id = frames::kOptical;
     if (settings.tf) transforms_ = std::make_unique<TransformReplay>(handle_, input);
     clock_ = handle_.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
     info_ = handle_.advertise<sensor_msgs::CameraInfo>(topics::kCameraInfo, kQueue);
@@ -135,6 +112,7 @@ class Feeder {
       }
       if (status_.getNumPublishers() == 0) missing += " a publisher of " + status_.getTopic();
       if (missing.empty()) return;
+      requireChain();
       if (steady_clock::now() > end) {
         throw InputError("waited " + std::to_string(settings_.timeout_s) + " s in vain for" +
                          missing + ": is the chain running?");
@@ -145,8 +123,25 @@ class Feeder {
 
   /// False when nothing was reported for so long; Ctrl-C ends the wait.
   bool waitBelow(std::size_t limit, double patience_s) {
-    return window_.waitBelow(limit, duration<double>(patience_s), [] { return ros::ok(); }) ||
-           !ros::ok();
+    const auto alive = [this] { return ros::ok() && chainIsUp(); };
+    const bool below = window_.waitBelow(limit, duration<double>(patience_s), alive);
+    requireChain();
+    return below || !ros::ok();
+  }
+
+  /// Whether the process of the chain, ~manager, runs; it is looked for now and then.
+  bool chainIsUp() const {
+    const auto now = steady_clock::now();
+    if (settings_.manager.empty() || now < look_again_) return chain_is_up_;
+    look_again_ = now + std::chrono::milliseconds(500);
+    const bool is_up = isNodeUp(ros::names::resolve(settings_.manager));
+    chain_was_up_ = chain_was_up_ || is_up;
+    chain_is_up_ = is_up || (!chain_was_up_ && now < begin_ + kChainPatience);
+    return chain_is_up_;
+  }
+
+  void requireChain() const {
+    if (ros::ok() && !chainIsUp()) throw InputError("the chain has ended: " + summary());
   }
 
   void send(const pf::RgbdFrame& frame) {
@@ -191,6 +186,10 @@ class Feeder {
   }
 
   FeederSettings settings_;
+  steady_clock::time_point begin_ = steady_clock::now();
+  mutable steady_clock::time_point look_again_ = begin_;
+  mutable bool chain_was_up_ = false;
+  mutable bool chain_is_up_ = true;
   std::unique_ptr<pf::FrameSource> source_;
   ros::NodeHandle handle_;
   std::unique_ptr<TransformReplay> transforms_;
@@ -205,6 +204,36 @@ class Feeder {
   ros::AsyncSpinner spinner_;
 };
 
+/// After the last frame. Not by `required` in the launch file: roslaunch calls a normal end an
+/// error then.
+void endLaunch(const FeederSettings& settings) {
+  if (!settings.ends.empty()) endNodes({settings.ends}, kEndPatience_s);
+  if (!settings.stays.empty()) {
+    const auto end = steady_clock::now() + kStayPatience;
+    const auto look = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
+    while (ros::ok() && steady_clock::now() < end && !isNodeUp(settings.stays)) look();
+    ROS_INFO("all is done; close %s to end", settings.stays.c_str());
+    while (ros::ok() && isNodeUp(settings.stays)) look();
+  }
+}
+
+/// The exit code.
+int feed(const std::string& input) {
+  int code = 1;
+  try {
+    const FeederSettings settings = readFeederSettings();
+    Feeder feeder(input, settings);
+    feeder.run();
+    ROS_INFO("%s", feeder.summary().c_str());
+    if (ros::ok()) endLaunch(settings);
+    code = 0;
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+  }
+  if (ros::ok()) endRoslaunch();
+  return code;
+}
+
 }  // namespace
 }  // namespace posefusion_ros
 
@@ -216,13 +245,5 @@ int main(int argc, char** argv) {
     return 2;
   }
   const ros::NodeHandle alive;  // ROS, and with it the log, ends with the last handle
-  try {
-    posefusion_ros::Feeder feeder(argv[1], posefusion_ros::readSettings());
-    feeder.run();
-    ROS_INFO("%s", feeder.summary().c_str());
-    return 0;
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
+  return posefusion_ros::feed(argv[1]);
 }

@@ -37,48 +37,118 @@ class Replay(unittest.TestCase):
         cls.call(program("posefusion_simulate"), "box_walker", "--output", cls.folder + "/sequence",
                  "--duration", f"{FRAMES / 30:.3f}")
         cls.call(program("posefusion_to_bag"), cls.folder + "/sequence", cls.bag)
+        shutil.copytree(cls.folder + "/sequence", cls.folder + "/no_people",
+                        ignore=shutil.ignore_patterns("people*.json"))
 
     @classmethod
     def tearDownClass(cls):
         shutil.rmtree(cls.folder)
 
     @classmethod
-    def call(cls, *command, expect=0):
-        environment = dict(os.environ, ROS_HOSTNAME="localhost", ROS_HOME=cls.folder + "/ros")
+    def call(cls, *command, expect=0, port=11311):
+        environment = dict(os.environ, ROS_HOSTNAME="localhost", ROS_HOME=cls.folder + "/ros", PWD=cls.folder,
+                           ROS_MASTER_URI=f"http://localhost:{port}")
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               timeout=TIME_LIMIT_S, env=environment, cwd=cls.folder)
         if expect is not None and done.returncode != expect:
             raise AssertionError(f"{command} gave {done.returncode}:\n{done.stdout}")
         return done.stdout
 
-    def replay(self, *arguments):
-        return self.call("roslaunch", "-p", str(free_port()), "posefusion", "replay.launch",
-                         "timeout_s:=60", "sanitize:=" + SANITIZE, *arguments, expect=None)
+    def replay(self, *arguments, expect=0, port=None):
+        return self.call("roslaunch", "posefusion", "replay.launch", "timeout_s:=60",
+                         "sanitize:=" + SANITIZE, *arguments, expect=expect, port=port or free_port())
 
     def test_lossless_replay_is_the_offline_run(self):
         text = self.replay("bag:=" + self.bag, "detector:=recorded",
                            "output:=" + self.folder + "/ros_run")
         self.assertIn(f"{FRAMES} frames sent, {FRAMES} fused", text)
-        self.assertIn("in " + self.folder + "/ros_run", text)
+        self.assertIn("in " + self.folder + "/ros_run/", text)
+        self.assertNotRegex(text, r"REQUIRED|ERROR|FATAL|has died|escalat")
+        self.assertLess(text.count("\n * /"), 60, "parameters at the start")
         self.call(program("posefusion_run"), self.bag, "--detector", "recorded", "--output",
                   self.folder + "/offline")
         offline = poses(self.folder + "/offline/trajectory.txt")
         self.assertEqual(len(offline), FRAMES)
-        self.assertEqual(poses(self.folder + "/ros_run/trajectory.txt"), offline)
-        self.assertEqual(pathlib.Path(self.folder, "ros_run/map.ply").read_bytes(),
+        self.assertEqual(poses(self.folder + "/ros_run/latest/trajectory.txt"), offline)
+        self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/map.ply").read_bytes(),
                          pathlib.Path(self.folder, "offline/map.ply").read_bytes())
 
     def test_real_time_replay_ends_by_itself(self):
         text = self.replay("bag:=" + self.folder + "/sequence", "detector:=none",
                            "lossless:=false", "rate:=0.5", "output:=" + self.folder + "/live")
         self.assertIn(f"{FRAMES} frames sent", text)
-        self.assertTrue(os.path.exists(self.folder + "/live/trajectory.txt"), text)
+        self.assertTrue(os.path.exists(self.folder + "/live/latest/trajectory.txt"), text)
 
-    def test_a_missing_bag_is_named(self):
-        text = self.replay("bag:=/nowhere/x.bag", "detector:=none",
-                           "output:=" + self.folder + "/nothing")
-        self.assertIn("/nowhere/x.bag: does not exist", text)
-        self.assertFalse(os.path.exists(self.folder + "/nothing"))
+    def test_relative_paths_are_those_of_the_call(self):
+        text = self.replay("bag:=sequence.bag", "detector:=none", "output:=near", "frame_id:=eye",
+                           "color_topic:=/camera/rgb/image_color", "max_frames:=2")
+        self.assertIn("2 frames sent, 2 fused", text)
+        self.assertTrue(os.path.exists(self.folder + "/near/latest/map.ply"), text)
+
+    def test_what_is_wrong_ends_the_launch_at_once(self):
+        file_in_the_way = pathlib.Path(self.folder, "file")
+        file_in_the_way.write_text("")
+        for arguments, said in (
+                (("bag:=/nowhere/x.bag",), "/nowhere/x.bag: does not exist"),
+                (("outptu:=x",), "argument outptu is unknown, expected one of bag lossless"),
+                (("mode:=fast",), "mode"),
+                (("config:=nothing.yaml",), self.folder + "/nothing.yaml"),
+                (("detector:=network", "model:=nothing.pb"), self.folder + "/nothing.pb"),
+                (("publish_tf:=ture",), "publish_tf:=ture, expected true or false"),
+                (("color_topic:=/nothing",), "topic /nothing is not in the bag"),
+                (("output:=file",), self.folder + "/file"),
+                (("detector:=recorded", "bag:=" + self.folder + "/no_people"), "no recorded people")):
+            if not any(a.startswith("bag:=") for a in arguments):
+                arguments += ("bag:=sequence.bag",)
+            if not any(a.startswith("detector:=") for a in arguments):
+                arguments += ("detector:=none",)
+            if not any(a.startswith("output:=") for a in arguments):
+                arguments += ("output:=nothing",)
+            text = self.replay(*arguments, expect=1)
+            self.assertIn(said, text, arguments)
+            self.assertNotIn("process[", text, "nothing was started")
+            self.assertFalse(os.path.exists(self.folder + "/nothing"), arguments)
+
+    def test_the_end_of_the_chain_ends_the_replay(self):
+        """Without the look at the arguments: roslaunch gives 0 whatever becomes of its nodes."""
+        text = self.replay("bag:=sequence.bag", "detector:=none", "output:=failed",
+                           "check:=false", "mode:=fast")
+        self.assertIn("cannot start", text)
+        self.assertIn("the chain has ended", text)
+        self.assertFalse(os.path.exists(self.folder + "/failed/latest"))
+
+    def test_a_setting_of_the_session_before_does_not_stay(self):
+        master = subprocess.Popen(["roscore", "-p", str(port := free_port())],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(master.wait)
+        self.addCleanup(master.terminate)
+        there = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
+        for command in (("get", "/run_id"), ("set", "/posefusion/fusion/tracking/max_distnce", "1")):
+            for _ in range(100):
+                done = subprocess.run(["rosparam", *command], env=there, stdout=subprocess.DEVNULL,
+                                      stderr=subprocess.DEVNULL)
+                if done.returncode == 0:
+                    break
+        text = self.replay("bag:=sequence.bag", "detector:=none", "max_frames:=2", "output:=clean",
+                           port=port)
+        self.assertIn("2 frames sent, 2 fused", text)
+
+    def test_rviz_only_with_a_display(self):
+        for launch in ("slam.launch", "replay.launch"):
+            for display, rviz in (("", False), (":9", True)):
+                environment = dict(os.environ, DISPLAY=display)
+                done = subprocess.run(
+                    ["roslaunch", "--nodes", "posefusion", launch, "check:=false", "bag:=x",
+                     *(("rviz:=true",) if launch == "replay.launch" and rviz else ())],
+                    env=environment, stdout=subprocess.PIPE, text=True, check=True)
+                self.assertEqual("/posefusion/rviz" in done.stdout, rviz, done.stdout)
+
+    def test_a_second_chain_has_its_own_map_frame(self):
+        for arguments, frame in (((), "map"), (("namespace:=left",), "left_map")):
+            done = subprocess.run(
+                ["roslaunch", "--dump-params", "posefusion", "slam.launch", "check:=false",
+                 "rviz:=false", *arguments], stdout=subprocess.PIPE, text=True, check=True)
+            self.assertRegex(done.stdout, rf"fusion/map_frame: {frame}\n")
 
     def test_the_bag_writer_leaves_nothing_half_done(self):
         text = self.call(program("posefusion_to_bag"), self.folder + "/sequence",

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/node_control.hpp"
+
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+namespace posefusion_ros {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+/// Calls a node's own interface. False where there is no such node, or it does not answer.
+bool callNode(const std::string& name, const char* method, const std::string& argument) {
+  XmlRpcValue request, response, uri;
+  request[0] = ros::this_node::getName();
+  request[1] = name;
+  if (!ros::master::execute("lookupNode", request, response, uri, false)) return false;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(static_cast<std::string>(uri), host, port)) return false;
+  const auto manager = ros::XMLRPCManager::instance();
+  XmlRpc::XmlRpcClient* client = manager->getXMLRPCClient(host, static_cast<int>(port), "/");
+  XmlRpcValue arguments, result;
+  arguments[0] = ros::this_node::getName();
+  if (!argument.empty()) arguments[1] = argument;
+  const bool done = client->execute(method, arguments, result);
+  manager->releaseXMLRPCClient(client);
+  return done;
+}
+
+}  // namespace
+
+std::vector<std::string> parentCommand() {
+  std::ifstream file("/proc/" + std::to_string(getppid()) + "/cmdline");
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
+void endRoslaunch() {
+  for (const std::string& word : parentCommand()) {
+    if (std::filesystem::path(word).filename() != "roslaunch") continue;
+    kill(getppid(), SIGINT);
+    return;
+  }
+}
+
+bool isNodeUp(const std::string& name) { return callNode(name, "getPid", ""); }
+
+void endNodes(const std::vector<std::string>& names, double patience_s) {
+  for (const std::string& relative : names) {
+    const std::string name = ros::names::resolve(relative);
+    if (!callNode(name, "shutdown", "no longer needed")) continue;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
+    while (std::chrono::steady_clock::now() < end && isNodeUp(name)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "feeder_settings.hpp"
+
+#include <ros/console.h>
+
+#include "posefusion_ros/parameters.hpp"
+
+namespace posefusion_ros {
+
+FeederSettings readFeederSettings() {
+  Parameters parameters{ros::NodeHandle("~")};
+  FeederSettings s;
+  s.lossless = parameters.flag("lossless", s.lossless);
+  s.window = parameters.integer("window", s.window, {1, 1000});
+  s.rate = parameters.number("rate", s.rate, {1e-3, 1e3});
+  s.timeout_s = parameters.number("timeout_s", s.timeout_s, {0.1, 1e6});
+  s.max_frames = parameters.integer("max_frames", s.max_frames, {0, 1e9});
+  s.tf = parameters.flag("tf", s.tf);
+  s.frame_id = parameters.text("frame_id", "");
+  s.input.camera_file = parameters.text("camera_file", "");
+  s.input.topics.color = parameters.text("color_topic", "");
+  s.input.topics.depth = parameters.text("depth_topic", "");
+  s.input.topics.camera_info = parameters.text("camera_info_topic", "");
+  s.manager = parameters.text("manager", "");
+  s.ends = parameters.text("ends", "");
+  s.stays = parameters.text("stays", "");
+  for (const std::string& name : parameters.unknown()) {
+    ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
+  }
+  return s;
+}
+
+}  // namespace posefusion_ros

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "posefusion_ros/bag_source.hpp"
+
+namespace posefusion_ros {
+
+/// What posefusion_feeder does; see docs/ros-api.md.
+struct FeederSettings {
+  bool lossless = true;
+  int window = 2;
+  double rate = 1.0;
+  double timeout_s = 60.0;
+  int max_frames = 0;
+  bool tf = false;
+  std::string frame_id;  ///< of the images; empty: the bag's
+  std::string
+      manager;  ///< node of the chain: the replay fails where it is gone; empty: not looked for
+  std::string ends;   ///< node that is ended after the last frame, so that it saves; may be empty
+  std::string stays;  ///< node that is waited for then (rviz); may be empty
+  InputOptions input;
+};
+
+/// From the private parameters. Throws InputError naming the one that is wrong.
+FeederSettings readFeederSettings();
+
+}  // namespace posefusion_ros

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// posefusion_launch_check: looks at what a launch file was given, before anything is started.
+// Called by roslaunch for the value of a parameter: roslaunch ends with 1 where this fails, and has
+// no other way to end so. Says what is wrong on stderr.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/run_folder.hpp"
+#include "posefusion/pose/detector.hpp"
+#include "posefusion/pose/model_settings.hpp"
+#include "posefusion/slam/config.hpp"
+#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/node_control.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using pf::InputError;
+
+constexpr char kAssign[] = ":=";
+
+/// "name:=value" as a pair; an empty name for anything else.
+std::pair<std::string, std::string> split(const std::string& text) {
+  const auto at = text.find(kAssign);
+  if (at == std::string::npos) return {};
+  return {text.substr(0, at), text.substr(at + 2)};
+}
+
+std::vector<std::string> declaredArguments(const std::string& launch_file) {
+  const std::string text = pf::readFile(launch_file);
+  const std::regex declaration("<arg\\s+name=\"(\\w+)\"");
+  std::vector<std::string> names;
+  for (std::sregex_iterator i(text.begin(), text.end(), declaration), end; i != end; ++i) {
+    names.push_back((*i)[1]);
+  }
+  return names;
+}
+
+/// roslaunch itself ignores arguments that a launch file does not have. Only where this launch file
+/// is the one that was called: otherwise the arguments are those of another one.
+void checkArguments(const std::string& launch_file) {
+  const std::string called = fs::path(launch_file).filename().string();
+  const std::vector<std::string> words = posefusion_ros::parentCommand();
+  int files = 0;
+  for (const auto& word : words) {
+    const fs::path path(word);
+    if (path.extension() != ".launch" && path.extension() != ".xml") continue;
+    ++files;
+    if (path.filename() != called) return;
+  }
+  if (files != 1) return;
+  const std::vector<std::string> names = declaredArguments(launch_file);
+  for (const auto& word : words) {
+    const std::string name = split(word).first;
+    if (name.empty() || name.front() == '_') continue;  // __log:=, _private:=
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    std::string known;
+    for (const auto& each : names) known += " " + each;
+    throw InputError("argument " + name + " is unknown, expected one of" + known);
+  }
+}
+
+/// What the launch file says about itself.
+class Given {
+ public:
+  Given(int argc, char** argv) {
+    for (int i = 2; i < argc; ++i) values_.insert(split(argv[i]));
+  }
+
+  std::string operator[](const std::string& name) const {
+    const auto found = values_.find(name);
+    return found == values_.end() ? "" : found->second;
+  }
+
+  /// Those named, with blanks between them, have to be true or false.
+  void checkFlags(const std::string& names) const {
+    std::istringstream list(names);
+    for (std::string name; list >> name;) {
+      const std::string value = (*this)[name];
+      if (value == "true" || value == "false" || value == "1" || value == "0") continue;
+      throw InputError("argument " + name + ":=" + value + ", expected true or false");
+    }
+  }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+pf::Config configOf(const Given& given) {
+  pf::Config config;
+  pf::applyFile(config, given["config"]);
+  if (!given["mode"].empty()) pf::applyMode(config, given["mode"]);
+  if (!given["model"].empty()) config.pose.model = given["model"];
+  if (!given["detector"].empty()) pf::applyAssignment(config, "pose.detector=" + given["detector"]);
+  return config;
+}
+
+/// A large network takes seconds to load: where there is a file, the nodelet finds out.
+void checkNetwork(const pf::PoseConfig& config) {
+  const std::string model = config.model.empty() ? pf::defaultModelPath() : config.model;
+  if (!fs::exists(model)) pf::makePoseDetector(config, {});
+  pf::findModelSettings(model);
+}
+
+void checkInput(const Given& given, const pf::Config& config) {
+  posefusion_ros::InputOptions options;
+  options.camera_file = given["camera_file"];
+  options.topics.color = given["color_topic"];
+  options.topics.depth = given["depth_topic"];
+  options.topics.camera_info = given["camera_info_topic"];
+  const std::string bag = given["bag"];
+  const auto source = posefusion_ros::openInput(bag, options);
+  if (config.pose.detector == "recorded" && source->people().empty()) {
+    throw InputError("detector:=recorded: " + bag +
+                     " has no recorded people, expected people.json or a topic of them");
+  }
+}
+
+void check(const std::string& launch_file, const Given& given) {
+  checkArguments(launch_file);
+  given.checkFlags(given["flags"]);
+  const pf::Config config = configOf(given);
+  if (config.pose.detector == "network" && given["without_people_if_no_detector"] != "true") {
+    checkNetwork(config.pose);
+  }
+  if (!given["bag"].empty()) checkInput(given, config);
+  if (!given["output"].empty()) pf::RunFolder(given["output"]).removeIfEmpty();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::cerr << "usage: posefusion_launch_check LAUNCH_FILE [name:=value]...\n";
+    return 2;
+  }
+  const std::string launch_file = argv[1];
+  try {
+    check(launch_file, Given(argc, argv));
+    std::cout << "ok";
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "\n"
+              << fs::path(launch_file).filename().string() << ": " << error.what() << "\n\n";
+    return 1;
+  }
+}
