@@ -80,7 +80,7 @@ void expectSound(const SurfelMap& map) {
       ASSERT_LE(s.radius[i], block.largest_radius);
     }
     if (s.size() == 0) continue;
-    EXPECT_LE(block.bounds.sizes().maxCoeff(), SurfelMap::kBlockSideM + 1e-5F);
+    EXPECT_LE(block.bounds.sizes().maxCoeff(), SurfelMap::kBlockSide_m + 1e-5F);
   }
 }
 
