@@ -90,8 +90,8 @@ MapRecording::MapRecording(const std::string& path, MapWriter::Mode mode, std::s
                            const Mapper& mapper)
     : writer_(path, mode), settings_(std::move(settings)) {
   if (mode == MapWriter::Mode::create) return;
-  written_.frames = mapper.backEnd().frames().size();
-  written_.keyframes = static_cast<int>(mapper.backEnd().graph().keyframes().size());
+  written_.frames = mapper.backEnd().loadedFrames();
+  written_.keyframes = static_cast<int>(mapper.backEnd().loadedKeyframes());
 }
 
 std::string MapRecording::update(const PinholeCamera& camera, const Mapper& mapper) {

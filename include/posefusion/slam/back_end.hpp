@@ -32,7 +32,8 @@ class BackEnd {
       : config_(graph.config()),
         graph_(std::move(graph)),
         frames_(std::move(frames)),
-        loaded_frames_(frames_.size()) {}
+        loaded_frames_(frames_.size()),
+        loaded_keyframes_(graph_.keyframes().size()) {}
 
   /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1.
   int add(const FusedFrame& frame);
@@ -48,6 +49,8 @@ class BackEnd {
 
   /// All recorded frames, loaded ones first.
   const std::vector<FrameRecord>& frames() const { return frames_; }
+  std::size_t loadedFrames() const { return loaded_frames_; }
+  std::size_t loadedKeyframes() const { return loaded_keyframes_; }
 
   const PoseGraph& graph() const { return graph_; }
   /// The poses of the keyframes, in their order.
@@ -65,7 +68,7 @@ class BackEnd {
   GraphConfig config_;
   PoseGraph graph_;
   std::vector<FrameRecord> frames_;
-  std::size_t loaded_frames_ = 0;  ///< of them
+  std::size_t loaded_frames_ = 0, loaded_keyframes_ = 0;
   Counts counts_;
 };
 
