@@ -50,12 +50,13 @@ void LoopCloser::addKeyframe(const KeyframeView& view) {
 }
 
 void LoopCloser::setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera) {
-  if (T_map_camera.size() != keyframes_.size()) {
+  const auto last = keyframes_.empty() ? -1 : keyframes_.back().view.id;
+  if (static_cast<std::int64_t>(T_map_camera.size()) <= last) {
     throw InputError("loop closer: got " + std::to_string(T_map_camera.size()) +
-                     " poses, expected " + std::to_string(keyframes_.size()));
+                     " poses, expected one of keyframe " + std::to_string(last));
   }
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    keyframes_[i].view.T_map_camera = T_map_camera[i];
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.view.T_map_camera = T_map_camera[static_cast<std::size_t>(keyframe.view.id)];
   }
 }
 

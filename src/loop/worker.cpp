@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/loop/worker.hpp"
 
+#include <algorithm>
+
 namespace pf {
 namespace {
 
 // Where no floor was mapped, the camera's own idea of up before the loss has to do.
 constexpr double kUpright_rad = 0.7;
+// Candidates that are verified; the same place may come from several searches.
+constexpr std::size_t kVerified = 6, kVerifiedElsewhere = 12;
 
 }  // namespace
 
@@ -29,6 +33,10 @@ LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking)
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
   answer.number = question.number;
+  if (question.known) {
+    closer_ = LoopCloser(config_, tracking_);
+    for (const KeyframeView& view : *question.known) closer_.addKeyframe(view);
+  }
   if (!question.corrected.empty()) closer_.setPoses(question.corrected);
   if (question.keyframe) {
     if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
@@ -57,9 +65,16 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   }
   if (points_.size() == 0) return std::nullopt;
   const PlaceQuery query = placeQuery(question.frame);
-  const auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
+  auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
+  for (const Eigen::Isometry3d& around : question.elsewhere) {
+    const auto more = searchPlaces(points_, query, around, up_, {});
+    candidates.insert(candidates.end(), more.begin(), more.end());
+  }
   if (candidates.empty()) return std::nullopt;
-  PlaceVerdict verdict = verifier_.verifyBest(*map_, question.frame, candidates);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+  const std::size_t most = question.elsewhere.empty() ? kVerified : kVerifiedElsewhere;
+  PlaceVerdict verdict = verifier_.verifyBest(*map_, question.frame, candidates, most);
   if (!verdict.accepted()) return std::nullopt;
   return verdict;
 }

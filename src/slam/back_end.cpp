@@ -56,9 +56,10 @@ GraphResult BackEnd::close(const std::vector<LoopConstraint>& loops) {
 
 Trajectory BackEnd::trajectory() const {
   Trajectory poses;
-  poses.reserve(frames_.size());
-  for (const Recorded& frame : frames_)
-    poses.push_back({frame.stamp_ns, graph_.poseOf(frame.pose)});
+  poses.reserve(frames_.size() - loaded_frames_);
+  for (std::size_t i = loaded_frames_; i < frames_.size(); ++i) {
+    poses.push_back({frames_[i].stamp_ns, graph_.poseOf(frames_[i].pose)});
+  }
   return poses;
 }
 

@@ -9,6 +9,8 @@ namespace pf {
 namespace {
 
 constexpr double kNanosecond = 1e-9;
+// Of the frame before the first: no flow begins there, and trusted_ns_ is another one.
+constexpr std::int64_t kNoFrame = -1;
 // Where no corners tell of the motion, the camera may have done anything a robot does.
 constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
@@ -46,6 +48,14 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
   trust(location, stamp_ns, 0.0);
   remember(frame, {}, {T_map_camera}, location, stamp_ns);
   return location;
+}
+
+void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
+  reset();
+  state_ = TrackingState::lost;
+  previous_.T_map_camera = T_map_located_ = T_map_camera;
+  previous_.stamp_ns = kNoFrame;
+  brightness_ = brightness;
 }
 
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/mapper.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/map/deform.hpp"
 #include "posefusion/map/fusion.hpp"
@@ -20,6 +22,22 @@ constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
 // Neither tracking nor the segmenter looks at anything farther than 8 m.
 const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
+// A camera anywhere in a loaded map is looked for around keyframes so far from each other: a search
+// reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
+constexpr double kRoomSide_m = 1.0;
+constexpr std::size_t kRoomsAtOnce = 4;
+
+/// Poses from which a search reaches around all of these; the last ones first.
+std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses) {
+  std::vector<Eigen::Isometry3d> chosen;
+  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+    const auto near = [&](const Eigen::Isometry3d& other) {
+      return (other.translation() - pose->translation()).norm() < kRoomSide_m;
+    };
+    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
+  }
+  return chosen;
+}
 
 }  // namespace
 
@@ -40,7 +58,12 @@ struct Mapper::State {
   std::int64_t last_stamp_ns = kBeforeAll;
   BackEnd back_end;
   std::optional<LoopQuestion> question;
-  bool keyframes_moved = false;  ///< since the last question
+  bool keyframes_moved = false;          ///< since the last question
+  std::vector<KeyframeView> views;       ///< of the keyframes
+  bool closer_is_old = false;            ///< does not know yet of the map that was loaded
+  bool may_change = true;                ///< the map
+  std::vector<Eigen::Isometry3d> rooms;  ///< of a loaded map until it is found: where to look
+  std::size_t next_room = 0;
   // Of the search for a lost camera.
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
@@ -50,6 +73,7 @@ struct Mapper::State {
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
+  void follow(const Location& location);
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void askForPlace();
@@ -121,6 +145,14 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   view.stamp_ns = last_stamp_ns;
 }
 
+/// Where a frame was believed that is not to be fused.
+void Mapper::State::follow(const Location& location) {
+  map_at_loss.reset();
+  rooms.clear();
+  showFrom(location.T_map_camera, false);
+  view.stamp_ns = last_stamp_ns;
+}
+
 /// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
 void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
   renderer.render(map, frame.camera, T_map_camera, kViewOptions, view);
@@ -130,6 +162,7 @@ void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
 /// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
 void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   map_at_loss.reset();
+  rooms.clear();
   FusedFrame fused;
   fused.stamp_ns = last_stamp_ns;
   fused.map_frame = map.frame();
@@ -137,14 +170,20 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   fused.covariance = location.tracking.covariance;
   fused.is_return = location.is_return;
   const int id = back_end.add(fused);
-  if (id < 0 || !config.loop.enabled) return;
+  if (id < 0) return;
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
+  views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
+  if (!config.loop.enabled) return;
   question.emplace();
+  if (std::exchange(closer_is_old, false)) {
+    question->known.emplace(views.begin(), views.end() - 1);
+    keyframes_moved = true;
+  }
   if (std::exchange(keyframes_moved, false)) {
     question->corrected = back_end.keyframePoses();
     question->corrected.pop_back();
   }
-  question->keyframe = keyframeView(frame, id, location.T_map_camera, nobody);
+  question->keyframe = views.back();
 }
 
 /// Lost: asks where this frame is, unless the answer for one before is still to come.
@@ -156,8 +195,11 @@ void Mapper::State::askForPlace() {
   }
   if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
   question.emplace();
-  question->place = std::make_shared<const PlaceQuestion>(
-      PlaceQuestion{copyOf(frame), map_at_loss, localiser.lastPose()});
+  PlaceQuestion place{copyOf(frame), map_at_loss, localiser.lastPose()};
+  for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
+    place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
+  }
+  question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();
   place_is_asked = true;
   place_is_stale = false;
@@ -190,7 +232,9 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   const Location location = s.locate(input);
   status.tracking_ms = watch.lapMs();
   s.question.reset();
-  if (location.outcome == FrameOutcome::fused) {
+  if (location.outcome == FrameOutcome::fused && !s.may_change) {
+    s.follow(location);
+  } else if (location.outcome == FrameOutcome::fused) {
     s.fuse(input, location);
     s.keep(input, location);
   } else if (location.state == TrackingState::lost) {
@@ -224,6 +268,34 @@ void Mapper::take(const LoopAnswer& answer) {
   }
   if (!answer.loops.empty()) s.correct(answer.loops);
 }
+
+void Mapper::load(SavedMap saved, MapUse use) {
+  if (saved.frame < 0 || saved.keyframes.empty()) {
+    throw InputError("has no keyframe: nothing was mapped");
+  }
+  State& s = *state_;
+  PoseGraph graph(s.config.graph, std::move(saved.keyframes), std::move(saved.constraints),
+                  saved.graph_version);
+  reset();
+  s.map.restore(saved.surfels, saved.frame);
+  s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
+  s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
+  for (KeyframeView& view : saved.views) {
+    if (view.intensity.size() != cv::Size(s.frame.camera.width, s.frame.camera.height)) continue;
+    view.camera = s.frame.camera;
+    s.views.push_back(std::move(view));
+  }
+  s.may_change = use == MapUse::extend;
+  s.closer_is_old = true;
+  const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
+  s.rooms = spreadOut(poses);
+  s.localiser.beginLost(poses.back(), saved.brightness);
+  s.showFrom(poses.back(), false);
+}
+
+const std::vector<KeyframeView>& Mapper::keyframeViews() const { return state_->views; }
+
+const Brightness& Mapper::brightness() const { return state_->localiser.brightness(); }
 
 const BackEnd& Mapper::backEnd() const { return state_->back_end; }
 
@@ -266,7 +338,11 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.last_stamp_ns = kBeforeAll;
   s.back_end = BackEnd(s.config.graph);
   s.question.reset();
-  s.keyframes_moved = s.place_is_asked = false;
+  s.keyframes_moved = s.place_is_asked = s.closer_is_old = false;
+  s.may_change = true;
+  s.views.clear();
+  s.rooms.clear();
+  s.next_room = 0;
   s.map_at_loss.reset();
 }
 

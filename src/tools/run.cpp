@@ -18,6 +18,7 @@
 #include "posefusion/run/run.hpp"
 #include "posefusion/run/run_report.hpp"
 #include "progress.hpp"
+#include "run_map.hpp"
 #include "run_observers.hpp"
 #include "run_options.hpp"
 
@@ -71,7 +72,7 @@ void sayLeftOut(const InputReport& report, Progress& progress) {
 /// Runs the chain; what stops it early (a damaged file) is returned, to be thrown once all is
 /// written.
 std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipeline& pipeline,
-                           RunReport& report, TrajectoryJournal& journal) {
+                           RunReport& report, TrajectoryJournal& journal, RunMap& map) {
   RunObservers observers(options, pipeline.mapper().map());
   const std::size_t limit = options.max_frames > 0 ? options.max_frames : SIZE_MAX;
   Progress progress(std::min(source.frameCount(), limit));
@@ -86,6 +87,8 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
           !std::exchange(disk_full, true)) {
         progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
       }
+      const std::string trouble = map.add(frame);
+      if (!trouble.empty()) progress.say(trouble + "; tried again");
       if (!defect.empty()) {
         progress.say("frame left out: " + defect);
       } else if (frame.status.outcome == FrameOutcome::bad_input) {
@@ -118,13 +121,16 @@ int run(const RunOptions& options) {
   report.setTruth(truthFor(options, *source));
   Pipeline pipeline(options.config, detectorFor(options, *source));
   requireOtherFolder(options);
+  if (!options.map_file.empty()) loadMap(options, pipeline);
   makeFolder(options.output);
   stopOnSignals();
   TrajectoryJournal journal(options.output + "/" + kJournal, "the run is not finished");
-  const auto failure = process(options, *source, pipeline, report, journal);
+  RunMap map(options, pipeline.mapper());
+  const auto failure = process(options, *source, pipeline, report, journal, map);
   report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
   report.write(options.output, pipeline.mapper().map());
   journal.remove();
+  map.finish();
   const int signal = stop_requested;
   if (signal != 0) std::cout << "interrupted: these are the results so far\n";
   std::cout << report.table() << "results  " << options.output << "\n";

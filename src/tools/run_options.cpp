@@ -63,6 +63,14 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
       ->check(CLI::NonNegativeNumber);
   app.add_option("--truth", options.truth, "true trajectory, TUM format");
   app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
+  auto* map = app.add_option("--map", options.map_file,
+                             "map file (*.pfdb) to begin in: the camera is looked for there");
+  auto* localize = app.add_flag("--localize-only", options.localize_only,
+                                "do not change the map, only find the camera in it");
+  app.add_flag("--continue", options.continue_map, "write the map file on")
+      ->needs(map)
+      ->excludes(localize);
+  localize->needs(map);
   addTopicOptions(app, reading);
   app.add_flag("--save-masks", options.save_masks, "write mask/ and people.json");
   app.add_option("--save-status", options.status_file,

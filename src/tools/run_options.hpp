@@ -20,7 +20,10 @@ struct RunOptions {
   int threads = 0;             ///< 0: all cores
   bool save_masks = false;
   bool check_depth = false;
-  std::string status_file;  ///< table of what became of each frame; empty: none
+  std::string map_file;        ///< to begin in; empty: a new map
+  bool localize_only = false;  ///< in it
+  bool continue_map = false;   ///< write that file on
+  std::string status_file;     ///< table of what became of each frame; empty: none
   Config config;
 };
 

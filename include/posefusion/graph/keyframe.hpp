@@ -21,4 +21,10 @@ struct RelativePose {
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
 };
 
+/// Where a frame was.
+struct FrameRecord {
+  std::int64_t stamp_ns = 0;
+  RelativePose pose;
+};
+
 }  // namespace pf

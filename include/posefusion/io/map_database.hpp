@@ -16,12 +16,6 @@
 
 namespace pf {
 
-/// Where a frame was.
-struct FrameRecord {
-  std::int64_t stamp_ns = 0;
-  RelativePose pose;
-};
-
 /// What a keyframe saw.
 struct KeyframeImages {
   int keyframe = -1;

@@ -42,7 +42,8 @@ class LoopCloser {
   /// Ids rise. Ferns are stored by their rules, the view in any case.
   void addKeyframe(const KeyframeView& view);
 
-  /// New poses after a correction, in the order of addKeyframe.
+  /// New poses after a correction: of keyframe i at place i. Throws InputError when there are fewer
+  /// than the last id wants.
   void setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera);
 
   /// Verified constraints from older keyframes to the last one added; at most one for each.

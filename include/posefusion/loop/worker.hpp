@@ -17,12 +17,17 @@ struct PlaceQuestion {
   WorkingFrame frame;                    ///< shares no memory with the frame at work
   std::shared_ptr<const SurfelMap> map;  ///< as it was when the camera was lost
   Eigen::Isometry3d T_map_last = Eigen::Isometry3d::Identity();  ///< last pose before the loss
+  /// Further poses around which to look, in a map that was loaded.
+  std::vector<Eigen::Isometry3d> elsewhere{};
 };
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
 struct LoopQuestion {
   std::int64_t number = 0;               ///< of the frame that asks, rising
   std::optional<KeyframeView> keyframe;  ///< number 0 begins a new map
+  /// The keyframes of a map just loaded, as far as their images are known: what was before is
+  /// forgotten.
+  std::optional<std::vector<KeyframeView>> known;
   /// Of all keyframes before this one, in their order, when a correction has moved them; else
   /// empty.
   std::vector<Eigen::Isometry3d> corrected;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posefusion/core/trajectory.hpp"
@@ -26,6 +27,14 @@ class BackEnd {
  public:
   explicit BackEnd(const GraphConfig& config) : config_(config), graph_(config) {}
 
+  /// Goes on with a graph and a trajectory that were saved.
+  BackEnd(PoseGraph graph, std::vector<FrameRecord> frames)
+      : config_(graph.config()),
+        graph_(std::move(graph)),
+        frames_(std::move(frames)),
+        loaded_frames_(frames_.size()),
+        loaded_keyframes_(graph_.keyframes().size()) {}
+
   /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1.
   int add(const FusedFrame& frame);
 
@@ -35,8 +44,13 @@ class BackEnd {
   /// Closes loops between keyframes; says what became of it.
   GraphResult close(const std::vector<LoopConstraint>& loops);
 
-  /// The poses of all recorded frames as they are known now.
+  /// The poses of all frames recorded here (not of loaded ones) as they are known now.
   Trajectory trajectory() const;
+
+  /// All recorded frames, loaded ones first.
+  const std::vector<FrameRecord>& frames() const { return frames_; }
+  std::size_t loadedFrames() const { return loaded_frames_; }
+  std::size_t loadedKeyframes() const { return loaded_keyframes_; }
 
   const PoseGraph& graph() const { return graph_; }
   /// The poses of the keyframes, in their order.
@@ -51,14 +65,10 @@ class BackEnd {
  private:
   int nearest(const Eigen::Isometry3d& T_map_camera) const;
 
-  struct Recorded {
-    std::int64_t stamp_ns = 0;
-    RelativePose pose;
-  };
-
   GraphConfig config_;
   PoseGraph graph_;
-  std::vector<Recorded> frames_;
+  std::vector<FrameRecord> frames_;
+  std::size_t loaded_frames_ = 0, loaded_keyframes_ = 0;
   Counts counts_;
 };
 

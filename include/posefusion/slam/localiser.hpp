@@ -48,12 +48,18 @@ class Localiser {
   Location begin(const WorkingFrame& frame, std::int64_t stamp_ns,
                  const Eigen::Isometry3d& T_map_camera);
 
+  /// A loaded map: lost, last known at `T_map_camera`. The grey levels of the map follow from those
+  /// of frames by `brightness`.
+  void beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness);
+
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
   /// the last fused frame. A `forced` frame (see BlurScore) is not believed enough to be fused.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                   bool forced, const ModelView& view, const ModelRenderer& render);
 
   TrackingState state() const { return state_; }
+  /// Between the map and the last frame that was believed.
+  const Brightness& brightness() const { return brightness_; }
   /// The last pose of a located frame.
   const Eigen::Isometry3d& lastPose() const { return T_map_located_; }
 

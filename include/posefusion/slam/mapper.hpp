@@ -11,12 +11,12 @@
 #include "posefusion/loop/worker.hpp"
 #include "posefusion/slam/back_end.hpp"
 #include "posefusion/slam/config.hpp"
+#include "posefusion/slam/saved_map.hpp"
 #include "posefusion/slam/status.hpp"
 
 namespace pf {
 
 class SurfelMap;
-struct SurfelArrays;
 
 /// A frame without its people, as mapping takes it.
 struct StaticFrame {
@@ -47,6 +47,16 @@ class Mapper {
   /// Takes in an answer: a loop corrects the map and all poses; a place found brings a lost camera
   /// back, once the next frames agree.
   void take(const LoopAnswer& answer);
+
+  /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
+  /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
+  void load(SavedMap map, MapUse use);
+
+  /// What the keyframes saw, rising by number; those of a loaded map as far as known.
+  const std::vector<KeyframeView>& keyframeViews() const;
+
+  /// Between the map and the last frame that was believed.
+  const Brightness& brightness() const;
 
   /// Keyframes, graph, and the poses of all frames as they are known now.
   const BackEnd& backEnd() const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/frame/flow.hpp"
@@ -45,6 +46,9 @@ class Pipeline {
   ProcessedFrame map(SeenFrame seen);
 
   ProcessedFrame process(const RgbdFrame& frame) { return map(see(frame)); }
+
+  /// Before the first frame: goes on in a saved map; see Mapper::load().
+  void load(SavedMap map, MapUse use) { mapper_.load(std::move(map), use); }
 
   /// Takes in what the loop closer still has to say, after the last frame.
   void finish() { loop_thread_.finish(mapper_); }

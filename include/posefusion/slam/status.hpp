@@ -20,7 +20,7 @@ enum class TrackingState {
 
 /// What became of a frame, and why it was not fused.
 enum class FrameOutcome {
-  fused,
+  fused,          ///< or, where the map must not change, would have been
   bad_input,      ///< sizes, encodings or stamps that cannot be used
   blurred,        ///< dropped by the gate
   no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)

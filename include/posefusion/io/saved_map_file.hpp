@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <string>
+
+#include "posefusion/io/map_database.hpp"
+#include "posefusion/slam/mapper.hpp"
+
+namespace pf {
+
+/// Reads all of a map file that a mapper needs. Throws InputError naming the file and what is wrong
+/// with it.
+SavedMap readSavedMap(const std::string& path);
+
+/// Keeps a map file up to date while a mapper works: about every second a copy of what has changed
+/// is written in a thread of its own, so that a killed process leaves a whole map. Its owner's
+/// thread alone may call it.
+class MapRecording {
+ public:
+  /// `extend`: the mapper has loaded that file. Throws InputError naming the file.
+  MapRecording(const std::string& path, MapWriter::Mode mode, std::string settings,
+               const Mapper& mapper);
+
+  /// After a frame of the mapper; `camera`: of the frame, rectified. Tells what was wrong with the
+  /// last write (empty: nothing): it is tried again with the next.
+  std::string update(const PinholeCamera& camera, const Mapper& mapper);
+
+  /// Writes the rest. Tells whether there is a map at all. Throws InputError naming the file.
+  bool finish(const Mapper& mapper);
+
+ private:
+  /// How much is in the file.
+  struct Written {
+    int frame = -1;  ///< blocks changed before it; -1: none
+    std::size_t frames = 0;
+    int keyframes = 0;
+  };
+
+  MapUpdate changes(const Mapper& mapper) const;
+  std::string takeResult();
+
+  MapWriter writer_;
+  std::string settings_;
+  PinholeCamera camera_;
+  Written written_, writing_;
+  std::future<void> work_;
+  std::chrono::steady_clock::time_point begun_{};
+};
+
+}  // namespace pf

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/saved_map_file.hpp"
+
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::chrono::seconds kPeriod{1};
+
+constexpr std::size_t kPixels = std::size_t{Thumbnail::kWidth} * Thumbnail::kHeight;
+constexpr std::size_t kThumbnailBytes = 1 + kPixels * (3 + sizeof(float));
+
+/// Name of the blob that holds what keyframe images do not.
+std::string blobName(std::int64_t keyframe) { return "keyframe/" + std::to_string(keyframe); }
+
+std::string encodeThumbnail(const KeyframeView& view) {
+  std::string bytes(1, view.nobody_in_view ? '\1' : '\0');
+  const Thumbnail& small = view.thumbnail;
+  bytes.append(reinterpret_cast<const char*>(small.color.data), 3 * kPixels);
+  bytes.append(reinterpret_cast<const char*>(small.depth_m.data), sizeof(float) * kPixels);
+  return bytes;
+}
+
+void decodeThumbnail(const std::string& bytes, KeyframeView& view) {
+  const cv::Size size(Thumbnail::kWidth, Thumbnail::kHeight);
+  view.nobody_in_view = bytes[0] != '\0';
+  view.thumbnail.color.create(size, CV_8UC3);
+  view.thumbnail.depth_m.create(size, CV_32FC1);
+  std::memcpy(view.thumbnail.color.data, bytes.data() + 1, 3 * kPixels);
+  std::memcpy(view.thumbnail.depth_m.data, bytes.data() + 1 + 3 * kPixels, sizeof(float) * kPixels);
+  if (cv::checkRange(view.thumbnail.depth_m, true, nullptr, 0.0, 1000.0)) return;
+  throw InputError("the small picture of keyframe " + std::to_string(view.id) +
+                   " has depths that cannot be");
+}
+
+std::vector<KeyframeView> readViews(const MapReader& reader, const MapContent& content) {
+  std::vector<KeyframeView> views;
+  for (const Keyframe& keyframe : content.keyframes) {
+    const auto blob = content.blobs.find(blobName(keyframe.id));
+    const KeyframeImages images = reader.images(keyframe.id);
+    if (blob == content.blobs.end() || images.grey.empty()) continue;
+    KeyframeView view;
+    view.id = keyframe.id;
+    view.T_map_camera = keyframe.T_map_camera;
+    view.intensity = images.grey;
+    view.depth_mm = images.depth_mm;
+    if (blob->second.size() != kThumbnailBytes) {
+      throw InputError("the small picture of keyframe " + std::to_string(view.id) + " has " +
+                       std::to_string(blob->second.size()) + " bytes, expected " +
+                       std::to_string(kThumbnailBytes));
+    }
+    decodeThumbnail(blob->second, view);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+SavedMap savedMap(const MapReader& reader) {
+  MapContent content = reader.content();
+  SavedMap map;
+  map.camera = content.camera;
+  map.brightness = content.brightness;
+  map.surfels = reader.surfels();
+  map.frame = content.frame;
+  map.views = readViews(reader, content);
+  map.keyframes = std::move(content.keyframes);
+  map.constraints = std::move(content.constraints);
+  map.graph_version = content.graph_version;
+  map.frames = std::move(content.frames);
+  return map;
+}
+
+}  // namespace
+
+SavedMap readSavedMap(const std::string& path) {
+  try {
+    return savedMap(MapReader(path));
+  } catch (const InputError& error) {
+    const std::string text = error.what(), name = path + ": ";
+    throw InputError(text.rfind(name, 0) == 0 ? text : name + text);
+  }
+}
+
+MapRecording::MapRecording(const std::string& path, MapWriter::Mode mode, std::string settings,
+                           const Mapper& mapper)
+    : writer_(path, mode), settings_(std::move(settings)) {
+  if (mode == MapWriter::Mode::create) return;
+  written_.frames = mapper.backEnd().loadedFrames();
+  written_.keyframes = static_cast<int>(mapper.backEnd().loadedKeyframes());
+}
+
+std::string MapRecording::update(const PinholeCamera& camera, const Mapper& mapper) {
+  if (work_.valid() && work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return {};
+  }
+  std::string error = takeResult();
+  const auto now = std::chrono::steady_clock::now();
+  if (mapper.map().frame() < 0 || now - begun_ < kPeriod) return error;
+  camera_ = camera;
+  begun_ = now;
+  auto changed = std::make_shared<const MapUpdate>(changes(mapper));
+  writing_ = {mapper.map().frame(), mapper.backEnd().frames().size(),
+              static_cast<int>(mapper.backEnd().graph().keyframes().size())};
+  work_ = std::async(std::launch::async, [this, changed] { writer_.write(*changed); });
+  return error;
+}
+
+bool MapRecording::finish(const Mapper& mapper) {
+  takeResult();
+  if (mapper.map().frame() < 0 || camera_.width == 0) return false;
+  writer_.write(changes(mapper));
+  return true;
+}
+
+/// All that the file does not have yet.
+MapUpdate MapRecording::changes(const Mapper& mapper) const {
+  const PoseGraph& graph = mapper.backEnd().graph();
+  const auto& frames = mapper.backEnd().frames();
+  MapUpdate update;
+  update.camera = camera_;
+  update.settings = settings_;
+  update.brightness = mapper.brightness();
+  update.frame = mapper.map().frame();
+  update.graph_version = graph.version();
+  update.keyframes = graph.keyframes();
+  update.constraints = graph.constraints();
+  update.frames.assign(frames.begin() + static_cast<std::ptrdiff_t>(written_.frames), frames.end());
+  for (const KeyframeView& view : mapper.keyframeViews()) {
+    if (view.id < written_.keyframes) continue;
+    update.images.push_back({static_cast<int>(view.id), view.intensity, view.depth_mm});
+    update.blobs[blobName(view.id)] = encodeThumbnail(view);
+  }
+  update.block_count = static_cast<std::uint32_t>(mapper.map().blocks().size());
+  update.blocks = changedBlocks(mapper.map(), written_.frame);
+  return update;
+}
+
+/// Of the write in work, waited for: what was wrong with it.
+std::string MapRecording::takeResult() {
+  if (!work_.valid()) return {};
+  try {
+    work_.get();
+    written_ = writing_;
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace pf
