@@ -1,84 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/mapper.hpp"
 
-#include <algorithm>
-#include <limits>
-#include <utility>
-#include <vector>
-
-#include "posefusion/core/error.hpp"
+#include "mapper_state.hpp"
 #include "posefusion/core/stopwatch.hpp"
-#include "posefusion/map/deform.hpp"
-#include "posefusion/map/fusion.hpp"
-#include "posefusion/map/render.hpp"
-#include "posefusion/map/surfel_map.hpp"
-#include "posefusion/slam/localiser.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 // A guess that lies further from the last view than this sees too much that the view does not show.
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
 // Neither tracking nor the segmenter looks at anything farther than 8 m.
 const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
-// A camera anywhere in a loaded map is looked for around keyframes so far from each other: a search
-// reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
-constexpr double kRoomSide_m = 1.0;
-constexpr std::size_t kRoomsAtOnce = 4;
-
-/// Poses from which a search reaches around all of these; the last ones first.
-std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses) {
-  std::vector<Eigen::Isometry3d> chosen;
-  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
-    const auto near = [&](const Eigen::Isometry3d& other) {
-      return (other.translation() - pose->translation()).norm() < kRoomSide_m;
-    };
-    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
-  }
-  return chosen;
-}
-
 }  // namespace
-
-struct Mapper::State {
-  explicit State(const Config& c)
-      : config(c), map(c.map), localiser(c.tracking), back_end(c.graph) {}
-
-  Config config;
-  SurfelMap map;
-  Localiser localiser;
-  Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
-  WorkingFrame frame;
-  ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
-  ModelPyramid model, model_elsewhere;
-  const ModelView nothing;
-  Fuser fuser;
-  SurfelRenderer renderer;
-  std::int64_t last_stamp_ns = kBeforeAll;
-  BackEnd back_end;
-  std::optional<LoopQuestion> question;
-  bool keyframes_moved = false;          ///< since the last question
-  std::vector<KeyframeView> views;       ///< of the keyframes
-  bool closer_is_old = false;            ///< does not know yet of the map that was loaded
-  bool may_change = true;                ///< the map
-  std::vector<Eigen::Isometry3d> rooms;  ///< of a loaded map until it is found: where to look
-  std::size_t next_room = 0;
-  // Of the search for a lost camera.
-  std::shared_ptr<const SurfelMap> map_at_loss;
-  Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
-  bool place_is_asked = false, place_is_stale = false;
-
-  std::string defect(const StaticFrame& input) const;
-  RenderedModel modelFrom(const Eigen::Isometry3d& T);
-  Location locate(const StaticFrame& input);
-  void fuse(const StaticFrame& input, const Location& location);
-  void follow(const Location& location);
-  void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
-  void keep(const StaticFrame& input, const Location& location);
-  void askForPlace();
-  void correct(const std::vector<LoopConstraint>& loops);
-};
 
 /// Why the frame cannot follow the ones before; empty when it can.
 std::string Mapper::State::defect(const StaticFrame& still) const {
@@ -159,65 +92,6 @@ void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
   model.assign(view, fill ? &frame.levels[0] : nullptr);
 }
 
-/// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
-void Mapper::State::keep(const StaticFrame& input, const Location& location) {
-  map_at_loss.reset();
-  rooms.clear();
-  FusedFrame fused;
-  fused.stamp_ns = last_stamp_ns;
-  fused.map_frame = map.frame();
-  fused.T_map_camera = location.T_map_camera;
-  fused.covariance = location.tracking.covariance;
-  fused.is_return = location.is_return;
-  const int id = back_end.add(fused);
-  if (id < 0) return;
-  const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
-  views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
-  if (!config.loop.enabled) return;
-  question.emplace();
-  if (std::exchange(closer_is_old, false)) {
-    question->known.emplace(views.begin(), views.end() - 1);
-    keyframes_moved = true;
-  }
-  if (std::exchange(keyframes_moved, false)) {
-    question->corrected = back_end.keyframePoses();
-    question->corrected.pop_back();
-  }
-  question->keyframe = views.back();
-}
-
-/// Lost: asks where this frame is, unless the answer for one before is still to come.
-void Mapper::State::askForPlace() {
-  const double pixels = static_cast<double>(frame.depth_m.total());
-  if (!config.loop.enabled || place_is_asked ||
-      frame.valid_pixels < config.tracking.min_valid_fraction * pixels) {
-    return;
-  }
-  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
-  question.emplace();
-  PlaceQuestion place{copyOf(frame), map_at_loss, localiser.lastPose()};
-  for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
-    place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
-  }
-  question->place = std::make_shared<const PlaceQuestion>(std::move(place));
-  T_reckoned_at_question = localiser.reckonedPose();
-  place_is_asked = true;
-  place_is_stale = false;
-}
-
-void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
-  const GraphResult result = back_end.close(loops);
-  if (!result.accepted || result.deformation.isIdentity()) return;
-  const Eigen::Isometry3d T_new_old = result.deformation.at(map.frame());
-  deform(map, result.deformation);
-  localiser.move(T_new_old);
-  const bool is_fused = view.stamp_ns == last_stamp_ns;
-  showFrom(T_new_old * view.T_map_camera, is_fused);
-  keyframes_moved = true;
-  map_at_loss.reset();
-  place_is_stale = true;
-}
-
 Mapper::Mapper(const Config& config) : state_(std::make_unique<State>(config)) {}
 Mapper::~Mapper() = default;
 
@@ -252,45 +126,6 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;
   return status;
-}
-
-std::optional<LoopQuestion> Mapper::takeQuestion() {
-  return std::exchange(state_->question, std::nullopt);
-}
-
-void Mapper::take(const LoopAnswer& answer) {
-  State& s = *state_;
-  if (answer.asked_for_place) {
-    s.place_is_asked = false;
-    if (answer.place && !s.place_is_stale) {
-      s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
-    }
-  }
-  if (!answer.loops.empty()) s.correct(answer.loops);
-}
-
-void Mapper::load(SavedMap saved, MapUse use) {
-  if (saved.frame < 0 || saved.keyframes.empty()) {
-    throw InputError("has no keyframe: nothing was mapped");
-  }
-  State& s = *state_;
-  PoseGraph graph(s.config.graph, std::move(saved.keyframes), std::move(saved.constraints),
-                  saved.graph_version);
-  reset();
-  s.map.restore(saved.surfels, saved.frame);
-  s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
-  s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
-  for (KeyframeView& view : saved.views) {
-    if (view.intensity.size() != cv::Size(s.frame.camera.width, s.frame.camera.height)) continue;
-    view.camera = s.frame.camera;
-    s.views.push_back(std::move(view));
-  }
-  s.may_change = use == MapUse::extend;
-  s.closer_is_old = true;
-  const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
-  s.rooms = spreadOut(poses);
-  s.localiser.beginLost(poses.back(), saved.brightness);
-  s.showFrom(poses.back(), false);
 }
 
 const std::vector<KeyframeView>& Mapper::keyframeViews() const { return state_->views; }

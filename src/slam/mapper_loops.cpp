@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <utility>
+
+#include "mapper_state.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/map/deform.hpp"
+
+namespace pf {
+namespace {
+
+// A camera anywhere in a loaded map is looked for around keyframes so far from each other: a search
+// reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
+constexpr double kRoomSide_m = 1.0;
+constexpr std::size_t kRoomsAtOnce = 4;
+
+/// Poses from which a search reaches around all of these; the last ones first.
+std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses) {
+  std::vector<Eigen::Isometry3d> chosen;
+  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+    const auto near = [&](const Eigen::Isometry3d& other) {
+      return (other.translation() - pose->translation()).norm() < kRoomSide_m;
+    };
+    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+/// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
+void Mapper::State::keep(const StaticFrame& input, const Location& location) {
+  map_at_loss.reset();
+  rooms.clear();
+  FusedFrame fused;
+  fused.stamp_ns = last_stamp_ns;
+  fused.map_frame = map.frame();
+  fused.T_map_camera = location.T_map_camera;
+  fused.covariance = location.tracking.covariance;
+  fused.is_return = location.is_return;
+  const int id = back_end.add(fused);
+  if (id < 0) return;
+  const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
+  views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
+  if (!config.loop.enabled) return;
+  question.emplace();
+  if (std::exchange(closer_is_old, false)) {
+    question->known.emplace(views.begin(), views.end() - 1);
+    keyframes_moved = true;
+  }
+  if (std::exchange(keyframes_moved, false)) {
+    question->corrected = back_end.keyframePoses();
+    question->corrected.pop_back();
+  }
+  question->keyframe = views.back();
+}
+
+/// Lost: asks where this frame is, unless the answer for one before is still to come.
+void Mapper::State::askForPlace() {
+  const double pixels = static_cast<double>(frame.depth_m.total());
+  if (!config.loop.enabled || place_is_asked ||
+      frame.valid_pixels < config.tracking.min_valid_fraction * pixels) {
+    return;
+  }
+  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
+  question.emplace();
+  PlaceQuestion place{copyOf(frame), map_at_loss, localiser.lastPose()};
+  for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
+    place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
+  }
+  question->place = std::make_shared<const PlaceQuestion>(std::move(place));
+  T_reckoned_at_question = localiser.reckonedPose();
+  place_is_asked = true;
+  place_is_stale = false;
+}
+
+void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
+  const GraphResult result = back_end.close(loops);
+  if (!result.accepted || result.deformation.isIdentity()) return;
+  const Eigen::Isometry3d T_new_old = result.deformation.at(map.frame());
+  deform(map, result.deformation);
+  localiser.move(T_new_old);
+  const bool is_fused = view.stamp_ns == last_stamp_ns;
+  showFrom(T_new_old * view.T_map_camera, is_fused);
+  keyframes_moved = true;
+  map_at_loss.reset();
+  place_is_stale = true;
+}
+
+std::optional<LoopQuestion> Mapper::takeQuestion() {
+  return std::exchange(state_->question, std::nullopt);
+}
+
+void Mapper::take(const LoopAnswer& answer) {
+  State& s = *state_;
+  if (answer.asked_for_place) {
+    s.place_is_asked = false;
+    if (answer.place && !s.place_is_stale) {
+      s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
+    }
+  }
+  if (!answer.loops.empty()) s.correct(answer.loops);
+}
+
+void Mapper::load(SavedMap saved, MapUse use) {
+  if (saved.frame < 0 || saved.keyframes.empty()) {
+    throw InputError("has no keyframe: nothing was mapped");
+  }
+  State& s = *state_;
+  PoseGraph graph(s.config.graph, std::move(saved.keyframes), std::move(saved.constraints),
+                  saved.graph_version);
+  reset();
+  s.map.restore(saved.surfels, saved.frame);
+  s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
+  s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
+  for (KeyframeView& view : saved.views) {
+    if (view.intensity.size() != cv::Size(s.frame.camera.width, s.frame.camera.height)) continue;
+    view.camera = s.frame.camera;
+    s.views.push_back(std::move(view));
+  }
+  s.may_change = use == MapUse::extend;
+  s.closer_is_old = true;
+  const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
+  s.rooms = spreadOut(poses);
+  s.localiser.beginLost(poses.back(), saved.brightness);
+  s.showFrom(poses.back(), false);
+}
+
+}  // namespace pf

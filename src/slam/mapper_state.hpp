@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "posefusion/map/fusion.hpp"
+#include "posefusion/map/render.hpp"
+#include "posefusion/map/surfel_map.hpp"
+#include "posefusion/slam/localiser.hpp"
+#include "posefusion/slam/mapper.hpp"
+
+namespace pf {
+
+constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
+
+/// The mapper's parts: frames are located and fused in mapper.cpp; what is asked of the loop closer
+/// and what its answers do stands in mapper_loops.cpp.
+struct Mapper::State {
+  explicit State(const Config& c)
+      : config(c), map(c.map), localiser(c.tracking), back_end(c.graph) {}
+
+  Config config;
+  SurfelMap map;
+  Localiser localiser;
+  Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
+  WorkingFrame frame;
+  ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
+  ModelPyramid model, model_elsewhere;
+  const ModelView nothing;
+  Fuser fuser;
+  SurfelRenderer renderer;
+  std::int64_t last_stamp_ns = kBeforeAll;
+  BackEnd back_end;
+  std::optional<LoopQuestion> question;
+  bool keyframes_moved = false;          ///< since the last question
+  std::vector<KeyframeView> views;       ///< of the keyframes
+  bool closer_is_old = false;            ///< does not know yet of the map that was loaded
+  bool may_change = true;                ///< the map
+  std::vector<Eigen::Isometry3d> rooms;  ///< of a loaded map until it is found: where to look
+  std::size_t next_room = 0;
+  // Of the search for a lost camera.
+  std::shared_ptr<const SurfelMap> map_at_loss;
+  Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
+  bool place_is_asked = false, place_is_stale = false;
+
+  std::string defect(const StaticFrame& input) const;
+  RenderedModel modelFrom(const Eigen::Isometry3d& T);
+  Location locate(const StaticFrame& input);
+  void fuse(const StaticFrame& input, const Location& location);
+  void follow(const Location& location);
+  void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
+  void keep(const StaticFrame& input, const Location& location);
+  void askForPlace();
+  void correct(const std::vector<LoopConstraint>& loops);
+};
+
+}  // namespace pf
