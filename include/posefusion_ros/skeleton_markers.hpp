@@ -10,7 +10,9 @@
 namespace posefusion_ros {
 
 /// Skeletons in the camera's optical frame: a line per limb whose two joints were seen and have
-/// depth. Begins with a marker that deletes those of the frame before.
+/// depth. Joints whose depth is far from that of most of the person's (the background's), and
+/// bones longer than people have them, are left out. Begins with a marker that deletes those of the
+/// frame before.
 visualization_msgs::MarkerArray toMarkers(const pf::People& people, const pf::RgbdFrame& frame,
                                           const std_msgs::Header& header);
 

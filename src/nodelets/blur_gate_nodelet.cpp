@@ -10,6 +10,7 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/input_pairing.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/topic_hints.hpp"
 #include "posefusion_ros/transforms.hpp"
 
 namespace posefusion_ros {
@@ -114,12 +115,22 @@ class BlurGateNodelet : public ChainNodelet {
 
   void tellMissing(const ros::WallTimerEvent&) {
     if (!sets_since_look_) {
-      NODELET_WARN(
-          "no complete frame for %.0f s. %s", missing_after_s_,
-          pairing_->describeArrivals({color_.getTopic(), depth_.getTopic(), info_.getTopic()})
-              .c_str());
+      NODELET_WARN("no complete frame for %.0f s. %s", missing_after_s_,
+                   pairing_
+                       ->describeArrivals({topicText(color_, "sensor_msgs/Image"),
+                                           topicText(depth_, "sensor_msgs/Image"),
+                                           topicText(info_, "sensor_msgs/CameraInfo")})
+                       .c_str());
     }
     sets_since_look_ = false;
+  }
+
+  /// The topic, and where nobody publishes it, which ones could be meant.
+  std::string topicText(const ros::Subscriber& topic, const std::string& type) const {
+    const std::string name = topic.getTopic();
+    if (topic.getNumPublishers() > 0) return name;
+    return name + " (nobody publishes it" +
+           topicHint({name, type}, getNodeHandle().getNamespace()) + ")";
   }
 
   pf::BlurConfig config_;

@@ -81,6 +81,15 @@ TEST_F(BagSourceTest, ReadsCompressedAndFloatImages) {
   EXPECT_TRUE(std::isnan(frames[0].frame.depth.at<float>(0, 0)));
 }
 
+TEST_F(BagSourceTest, TheFrameIdIsThatOfTheColorImages) {
+  BagFile bag(path());
+  bag.info();
+  bag.color(33 * kMs);
+  bag.depth(33 * kMs);
+  bag.close();
+  EXPECT_EQ(recordedFrameId(path(), {}), "camera");
+}
+
 TEST_F(BagSourceTest, ErrorsListWhatTheBagHas) {
   BagFile bag(path());
   bag.info();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../temporary_folder.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace posefusion_ros {
@@ -10,15 +11,7 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-template <typename Function>
-std::string errorOf(Function function) {
-  try {
-    function();
-  } catch (const pf::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
+using pf::errorOf;
 
 XmlRpcValue someValues() {
   XmlRpcValue values;
@@ -49,6 +42,29 @@ TEST(RosParameters, ReachTheConfigurationWithAllTheirDigits) {
   EXPECT_EQ(config.tracking.max_distance_m, 0.123456789012345);
   EXPECT_NE(p.effective().find("blur.threshold=5"), std::string::npos);
   EXPECT_EQ(p.effective().find("tracking"), std::string::npos);
+}
+
+TEST(RosParameters, TheFileIsReadFirst) {
+  const pf::TemporaryFolder folder;
+  XmlRpcValue values;
+  values["config"] = folder.write("some.yaml", "blur: {threshold: 4, max_consecutive_drops: 9}\n");
+  values["blur"]["threshold"] = 5;
+  const pf::Config config = Parameters(values, "/gate").config({"blur"});
+  EXPECT_EQ(config.blur.threshold, 5.0);
+  EXPECT_EQ(config.blur.max_consecutive_drops, 9);
+  values["config"] = folder.write("bad.yaml", "blurr: {}\n");
+  EXPECT_NE(errorOf([&] { Parameters(values, "/gate").config({"blur"}); }).find("bad.yaml"),
+            std::string::npos);
+}
+
+TEST(RosParameters, WhatIsNotTheDefaultIsTold) {
+  Parameters p(someValues(), "/gate");
+  p.config({"blur"});
+  p.integer("queue_size", 7, {1, 10});
+  p.flag("lossless", false);
+  EXPECT_EQ(p.changed(),
+            "settings besides the defaults: blur.enabled=false blur.threshold=5 lossless=true");
+  EXPECT_EQ(Parameters(XmlRpcValue(), "/gate").changed(), "all settings are the defaults");
 }
 
 TEST(RosParameters, ModeHoldsOverTheGroups) {
