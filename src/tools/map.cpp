@@ -47,9 +47,9 @@ void printInfo(const std::string& file) {
               fragmentsOf(content), counts.images);
   std::printf("constraints  %zu, of them %td loops\n", content.constraints.size(), loops);
   std::printf("corrections  %d\n", content.graph_version);
-  for (const auto& [name, data] : content.blobs) {
-    std::printf("blob         %s, %zu bytes\n", name.c_str(), data.size());
-  }
+  std::size_t bytes = 0;
+  for (const auto& [name, data] : content.blobs) bytes += data.size();
+  std::printf("blobs        %zu, %zu bytes\n", content.blobs.size(), bytes);
 }
 
 /// Reads all there is; whatever is wrong throws.
