@@ -47,7 +47,7 @@ TEST_F(MapToolTest, InfoTellsWhatIsInTheFile) {
   EXPECT_TRUE(hasSaid("surfels      4000 in")) << said;
   EXPECT_TRUE(hasSaid("keyframes    2 in 1 fragments, 2 with images")) << said;
   EXPECT_TRUE(hasSaid("constraints  2, of them 1 loops")) << said;
-  EXPECT_TRUE(hasSaid("blobs        1, 3 bytes")) << said;
+  EXPECT_TRUE(hasSaid("blobs        2, 3 bytes")) << said;
 }
 
 TEST_F(MapToolTest, CheckReadsItAll) {
