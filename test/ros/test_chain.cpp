@@ -76,8 +76,8 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   ASSERT_TRUE(chain.call("save_map").success);
   saveTrajectory(folder / "expected.txt", expected, "");
   saveMap(folder / "expected.ply", pipeline.mapper().map());
-  EXPECT_EQ(posesIn(folder / "trajectory.txt"), posesIn(folder / "expected.txt"));
-  EXPECT_EQ(pf::readFile(folder / "map.ply"), pf::readFile(folder / "expected.ply"));
+  EXPECT_EQ(posesIn(folder / "latest/trajectory.txt"), posesIn(folder / "expected.txt"));
+  EXPECT_EQ(pf::readFile(folder / "latest/map.ply"), pf::readFile(folder / "expected.ply"));
   chain.unload();
 }
 
