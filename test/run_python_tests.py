@@ -38,6 +38,7 @@ def main():
     file, report = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     if len(sys.argv) > 3:
         os.environ["POSEFUSION_PROGRAMS"] = sys.argv[3]
+    sys.path.insert(0, str(file.parent))  # tests may use each other's helpers
     loader = importlib.machinery.SourceFileLoader(file.stem, str(file))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(file.stem, loader))
     loader.exec_module(module)
