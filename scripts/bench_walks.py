@@ -28,10 +28,16 @@ class Walks(Runs):
         return ("recorded", "network") if self.options.model.exists() else ("recorded",)
 
     def walk(self):
+        self.for_each_run(self.walk_without_loops, self.walk_with_loops)
+
+    def fall(self):
+        self.for_each_run(self.fall_without_loops, self.fall_with_loops)
+
+    def for_each_run(self, *parts):
         for people in self.detectors():
             for seed in self.options.seeds:
-                self.walk_without_loops(seed, people)
-                self.walk_with_loops(seed, people)
+                for part in parts:
+                    part(seed, people)
 
     def walk_without_loops(self, seed, people):
         name = f"loop_room {seed}, {people}, no loop closing"
@@ -50,12 +56,6 @@ class Walks(Runs):
         self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.05, digits=3)
         for count in ("keyframes", "ferns", "accepted", "corrections"):
             self.row(f"{name}, loops: {count}", summary["loops"][count], "", digits=0)
-
-    def fall(self):
-        for people in self.detectors():
-            for seed in self.options.seeds:
-                self.fall_without_loops(seed, people)
-                self.fall_with_loops(seed, people)
 
     def fall_without_loops(self, seed, people):
         name = f"fall_short {seed}, {people}, no loop closing"

@@ -16,4 +16,15 @@ inline PinholeCamera smallCamera() {
   return camera;
 }
 
+/// 640x480 pixels, as of an Xtion.
+inline PinholeCamera vga() {
+  PinholeCamera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 525;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  return camera;
+}
+
 }  // namespace pf

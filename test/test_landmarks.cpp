@@ -7,19 +7,10 @@
 
 #include "posefusion/core/se3.hpp"
 #include "posefusion/tracking/sparse_motion.hpp"
+#include "small_camera.hpp"
 
 namespace pf {
 namespace {
-
-PinholeCamera vga() {
-  PinholeCamera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 /// A camera that goes along a wall of corners, and what it sees of them.
 class LandmarksTest : public ::testing::Test {

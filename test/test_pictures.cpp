@@ -6,6 +6,7 @@
 #include "posefusion/run/people_picture.hpp"
 #include "posefusion/run/plan_picture.hpp"
 #include "posefusion/run/plot.hpp"
+#include "small_camera.hpp"
 
 namespace pf {
 namespace {
@@ -78,12 +79,7 @@ TEST(MapPicture, ShowsTheMapFromThreeSides) {
     }
   }
   map.add(s);
-  PinholeCamera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
+  const PinholeCamera camera = vga();
   const Trajectory still = {{0, Eigen::Isometry3d::Identity()}};
   const cv::Mat picture = drawMap(map, still, camera);
   ASSERT_EQ(picture.size(), cv::Size(3 * 640, 480));

@@ -5,18 +5,10 @@
 
 #include <random>
 
+#include "small_camera.hpp"
+
 namespace pf {
 namespace {
-
-PinholeCamera vga() {
-  PinholeCamera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 /// A wall that leans, with corners on it, seen by two cameras; some corners belong to somebody who
 /// walks.

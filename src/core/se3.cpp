@@ -88,6 +88,12 @@ Matrix6d leftJacobianSe3(const Vector6d& twist) {
          (2 * a - 3 * sine + a * cosine) / (2 * a2 * a3) * ad2 * ad2;
 }
 
+double angleOf(const Eigen::Isometry3d& T) { return logSo3(T.linear()).norm(); }
+
+bool isWithin(const Eigen::Isometry3d& T, double shift_m, double turn_rad) {
+  return T.translation().norm() <= shift_m && angleOf(T) <= turn_rad;
+}
+
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d out = T;
   out.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();

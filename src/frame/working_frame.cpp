@@ -58,4 +58,19 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   }
 }
 
+WorkingFrame WorkingFrame::clone() const {
+  WorkingFrame copy = *this;
+  for (cv::Mat* image :
+       {&copy.depth_m, &copy.beyond_m, &copy.color, &copy.full_depth_m, &copy.smooth_m_}) {
+    *image = image->clone();
+  }
+  for (FrameLevel& level : copy.levels) {
+    for (cv::Mat* plane : {&level.depth_m, &level.normal_x, &level.normal_y, &level.normal_z,
+                           &level.intensity, &level.still}) {
+      *plane = plane->clone();
+    }
+  }
+  return copy;
+}
+
 }  // namespace pf

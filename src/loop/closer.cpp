@@ -24,8 +24,6 @@ FernConfig fernConfig(const LoopConfig& config) {
   return ferns;
 }
 
-double turnOf(const Eigen::Isometry3d& T) { return logSo3(T.linear()).norm(); }
-
 }  // namespace
 
 LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking)
@@ -76,7 +74,7 @@ std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
   for (std::size_t i = 0; i < old; ++i) {
     const Eigen::Isometry3d step =
         keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
-    const double far = step.translation().norm() + turnOf(step);
+    const double far = step.translation().norm() + angleOf(step);
     if (step.translation().norm() < config_.near_m) near.emplace_back(far, i);
   }
   std::sort(near.begin(), near.end());
@@ -86,7 +84,7 @@ std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
     if (match.found) found.push_back({i, match.T_first_second});
     const Eigen::Isometry3d step =
         keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
-    if (turnOf(step) < kNearTurn_rad) found.push_back({i, step});
+    if (angleOf(step) < kNearTurn_rad) found.push_back({i, step});
   }
   return found;
 }
@@ -104,7 +102,7 @@ bool LoopCloser::verify(const Guess& guess, const WorkingFrame& to, LoopConstrai
   const Eigen::Isometry3d T = forth.alignment.T_map_camera;
   const PlaceVerdict back = alignPair(to, from, T.inverse(), tracking_, limits);
   const Eigen::Isometry3d circle = T * back.alignment.T_map_camera;
-  if (!back.accepted() || circle.translation().norm() > kOneWay_m || turnOf(circle) > kOneWay_rad) {
+  if (!back.accepted() || !isWithin(circle, kOneWay_m, kOneWay_rad)) {
     ++counts_.one_way;
     return false;
   }

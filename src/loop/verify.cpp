@@ -54,8 +54,6 @@ double correlationOf(const std::vector<GreySums>& windows) {
   return texture > 0 ? both / texture : 0.0;
 }
 
-double angleOf(const Eigen::Isometry3d& T) { return logSo3(T.linear()).norm(); }
-
 }  // namespace
 
 std::string_view name(PlaceDoubt doubt) {
@@ -132,7 +130,7 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
   const double least = has_shape ? limits.min_correlation_of_shape : limits.min_correlation;
   if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
   if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
-  if (step.translation().norm() > limits.max_shift_m || angleOf(step) > limits.max_turn_rad) {
+  if (!isWithin(step, limits.max_shift_m, limits.max_turn_rad)) {
     return PlaceDoubt::moved_away;
   }
   return PlaceDoubt::none;
@@ -172,7 +170,7 @@ PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame&
     if (best.accepted()) {
       const Eigen::Isometry3d step =
           best.alignment.T_map_camera.inverse() * verdict.alignment.T_map_camera;
-      if (step.translation().norm() > kSamePlace_m || angleOf(step) > kSamePlace_rad) {
+      if (!isWithin(step, kSamePlace_m, kSamePlace_rad)) {
         best.doubt = PlaceDoubt::ambiguous;
         return best;
       }

@@ -13,32 +13,18 @@ constexpr std::size_t kVerified = 6, kVerifiedElsewhere = 12;
 
 }  // namespace
 
-WorkingFrame copyOf(const WorkingFrame& frame) {
-  WorkingFrame copy = frame;
-  for (cv::Mat* image : {&copy.depth_m, &copy.beyond_m, &copy.color, &copy.full_depth_m}) {
-    *image = image->clone();
-  }
-  for (FrameLevel& level : copy.levels) {
-    for (cv::Mat* plane : {&level.depth_m, &level.normal_x, &level.normal_y, &level.normal_z,
-                           &level.intensity, &level.still}) {
-      *plane = plane->clone();
-    }
-  }
-  return copy;
-}
-
 LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking)
     : config_(config), tracking_(tracking), closer_(config, tracking), verifier_(tracking) {}
 
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
-  answer.number = question.number;
   if (question.known) {
     closer_ = LoopCloser(config_, tracking_);
     for (const KeyframeView& view : *question.known) closer_.addKeyframe(view);
   }
   if (!question.corrected.empty()) closer_.setPoses(question.corrected);
   if (question.keyframe) {
+    map_.reset();  // mapping goes on: the copy made at the loss is of no more use
     if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
     closer_.addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();

@@ -13,7 +13,7 @@ int BackEnd::nearest(const Eigen::Isometry3d& T_map_camera) const {
   double least = std::numeric_limits<double>::max();
   for (const Keyframe& keyframe : graph_.keyframes()) {
     const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * T_map_camera;
-    const double far = step.translation().norm() + logSo3(step.linear()).norm();
+    const double far = step.translation().norm() + angleOf(step);
     if (far >= least) continue;
     least = far;
     nearest = keyframe.id;
@@ -32,9 +32,9 @@ int BackEnd::add(const FusedFrame& frame) {
   }
   const Keyframe& last = graph_.keyframes().back();
   const Eigen::Isometry3d step = last.T_map_camera.inverse() * frame.T_map_camera;
-  const bool is_new = step.translation().norm() > config_.keyframe_distance_m ||
-                      logSo3(step.linear()).norm() > config_.keyframe_angle_rad;
-  return is_new ? graph_.addKeyframe(keyframe, last.id, frame.covariance) : -1;
+  const GraphConfig& config = graph_.config();
+  if (isWithin(step, config.keyframe_distance_m, config.keyframe_angle_rad)) return -1;
+  return graph_.addKeyframe(keyframe, last.id, frame.covariance);
 }
 
 void BackEnd::record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera) {

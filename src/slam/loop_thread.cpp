@@ -26,7 +26,6 @@ void LoopThread::finish(Mapper& mapper) {
 void LoopThread::reset() { asked_.clear(); }
 
 void LoopThread::ask(LoopQuestion question) {
-  question.number = number_;
   // Each question waits for the one before: the worker sees them in their order.
   auto work = [worker = worker_, before = last_, question = std::move(question)] {
     if (before.valid()) before.wait();

@@ -35,8 +35,7 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
 /// The last view where it serves, else one of its own.
 RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
   const Eigen::Isometry3d step = view.T_map_camera.inverse() * T;
-  if (step.translation().norm() < kSameViewShift_m &&
-      logSo3(step.linear()).norm() < kSameViewTurn_rad) {
+  if (step.translation().norm() < kSameViewShift_m && angleOf(step) < kSameViewTurn_rad) {
     return {model, view.T_map_camera};
   }
   renderer.render(map, frame.camera, T, kViewOptions, elsewhere);

@@ -64,7 +64,7 @@ void Mapper::State::askForPlace() {
   }
   if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
   question.emplace();
-  PlaceQuestion place{copyOf(frame), map_at_loss, localiser.lastPose()};
+  PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
   }

@@ -24,7 +24,7 @@ constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough
 std::string stepText(const Eigen::Isometry3d& step, const char* what) {
   char text[96];
   std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
-                logSo3(step.linear()).norm() * 180.0 / M_PI, what);
+                angleOf(step) * 180.0 / M_PI, what);
   return text;
 }
 
@@ -41,10 +41,6 @@ std::string percentOf(double part, double whole, const char* what) {
   char text[80];
   std::snprintf(text, sizeof text, "%.0f %% %s", whole > 0 ? 100.0 * part / whole : 0.0, what);
   return text;
-}
-
-bool isWithin(const Eigen::Isometry3d& step, double shift_m, double turn_rad) {
-  return step.translation().norm() <= shift_m && logSo3(step.linear()).norm() <= turn_rad;
 }
 
 bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

@@ -31,6 +31,12 @@ Matrix6d adjoint(const Eigen::Isometry3d& T);
 /// equation (7.83) ff.
 Matrix6d leftJacobianSe3(const Vector6d& twist);
 
+/// Angle (rad, at most pi) that a rigid motion turns by.
+double angleOf(const Eigen::Isometry3d& T);
+
+/// Does a motion shift by at most `shift_m` and turn by at most `turn_rad`?
+bool isWithin(const Eigen::Isometry3d& T, double shift_m, double turn_rad);
+
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 

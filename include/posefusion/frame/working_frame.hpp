@@ -34,6 +34,9 @@ struct WorkingFrame {
   /// Prepares everything from a frame; `mask` (255 = person) may be empty. Reuses memory.
   void assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config);
 
+  /// A copy that shares no memory with this one.
+  WorkingFrame clone() const;
+
  private:
   cv::Mat smooth_m_;
 };

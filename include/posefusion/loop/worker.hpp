@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,7 +22,6 @@ struct PlaceQuestion {
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
 struct LoopQuestion {
-  std::int64_t number = 0;               ///< of the frame that asks, rising
   std::optional<KeyframeView> keyframe;  ///< number 0 begins a new map
   /// The keyframes of a map just loaded, as far as their images are known: what was before is
   /// forgotten.
@@ -36,15 +34,11 @@ struct LoopQuestion {
 
 /// What was found.
 struct LoopAnswer {
-  std::int64_t number = 0;            ///< of the question
   std::vector<LoopConstraint> loops;  ///< of the keyframe
   bool asked_for_place = false;
   std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
   LoopCounts counts;                  ///< since the beginning
 };
-
-/// A copy that shares no image with the original.
-WorkingFrame copyOf(const WorkingFrame& frame);
 
 /// The loop closer's work, question by question: loops of keyframes, and a lost camera's place by
 /// drawing the map around the last pose before the loss (searchPlaces) and verifying the best

@@ -25,12 +25,11 @@ struct FusedFrame {
 /// relative to the last keyframe before it, so that a correction moves all. Not thread safe.
 class BackEnd {
  public:
-  explicit BackEnd(const GraphConfig& config) : config_(config), graph_(config) {}
+  explicit BackEnd(const GraphConfig& config) : graph_(config) {}
 
   /// Goes on with a graph and a trajectory that were saved.
   BackEnd(PoseGraph graph, std::vector<FrameRecord> frames)
-      : config_(graph.config()),
-        graph_(std::move(graph)),
+      : graph_(std::move(graph)),
         frames_(std::move(frames)),
         loaded_frames_(frames_.size()),
         loaded_keyframes_(graph_.keyframes().size()) {}
@@ -65,7 +64,6 @@ class BackEnd {
  private:
   int nearest(const Eigen::Isometry3d& T_map_camera) const;
 
-  GraphConfig config_;
   PoseGraph graph_;
   std::vector<FrameRecord> frames_;
   std::size_t loaded_frames_ = 0, loaded_keyframes_ = 0;

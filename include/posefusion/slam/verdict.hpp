@@ -26,8 +26,6 @@ bool isProof(const TrackingResult& result, int valid_pixels);
 /// "12 % of the pixels".
 std::string percentOf(double part, double whole, const char* what);
 
-bool isWithin(const Eigen::Isometry3d& step, double shift_m, double turn_rad);
-
 /// Poses this near each other say the same.
 bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 
