@@ -12,6 +12,8 @@ constexpr int kLanes = 16;
 // A pair agrees when its distance can be explained by noise. Pairs further apart still pull,
 // weakly.
 constexpr float kInlierSigmas = 3.0F;
+// Nothing nearer is seen.
+constexpr float kNear_m = 0.05F;
 
 #define POSEFUSION_INLINE inline __attribute__((always_inline))
 #define FOR_LANES for (int l = 0; l < kLanes; ++l)
@@ -63,15 +65,23 @@ POSEFUSION_INLINE void project(const Points& p, const Image& image, const Motion
   }
   const auto max_u = static_cast<float>(image.width - 1);
   const auto max_v = static_cast<float>(image.height - 1);
+  // Numbers instead of branches: the compiler makes SIMD code of no other loop.
+  float in_front[kLanes], u[kLanes], v[kLanes];
+  FOR_LANES in_front[l] = static_cast<float>(static_cast<int>(q.z[l] > kNear_m));
   FOR_LANES {
-    const float z = q.z[l] > 0.05F ? q.z[l] : 1.0F;
+    const float z = q.z[l] * in_front[l] + (1 - in_front[l]);
     q.inverse_z[l] = 1.0F / z;
-    const float u = image.fx * q.x[l] * q.inverse_z[l] + image.cx;
-    const float v = image.fy * q.y[l] * q.inverse_z[l] + image.cy;
-    const bool inside = q.z[l] > 0.05F && u >= 0 && v >= 0 && u < max_u && v < max_v;
-    q.inside[l] = inside ? 1.0F : 0.0F;
-    q.u[l] = inside ? u : 0.0F;
-    q.v[l] = inside ? v : 0.0F;
+    u[l] = image.fx * q.x[l] * q.inverse_z[l] + image.cx;
+    v[l] = image.fy * q.y[l] * q.inverse_z[l] + image.cy;
+  }
+  FOR_LANES {
+    const int inside = static_cast<int>(u[l] >= 0) & static_cast<int>(u[l] < max_u) &
+                       static_cast<int>(v[l] >= 0) & static_cast<int>(v[l] < max_v);
+    q.inside[l] = static_cast<float>(inside) * in_front[l];
+  }
+  FOR_LANES {
+    q.u[l] = u[l] * q.inside[l];
+    q.v[l] = v[l] * q.inside[l];
     q.corner[l] = static_cast<int>(q.v[l]) * image.width + static_cast<int>(q.u[l]);
     q.nearest[l] = static_cast<int>(q.v[l] + 0.5F) * image.width + static_cast<int>(q.u[l] + 0.5F);
   }
@@ -122,9 +132,15 @@ POSEFUSION_INLINE void photometricTerm(const Points& p, std::size_t i, const Gro
                                        const Image& image, const Gates& gates,
                                        const float (&near)[kLanes], float (&sums)[kSums][kLanes]) {
   float ax[kLanes], ay[kLanes], az[kLanes], weight[kLanes], residual[kLanes];
+  float i00s[kLanes], i01s[kLanes], i10s[kLanes], i11s[kLanes];
   FOR_LANES {
-    const float* at = image.intensity + q.corner[l];
-    const float i00 = at[0], i01 = at[1], i10 = at[image.width], i11 = at[image.width + 1];
+    i00s[l] = image.intensity[q.corner[l]];
+    i01s[l] = image.intensity[q.corner[l] + 1];
+    i10s[l] = image.intensity[q.corner[l] + image.width];
+    i11s[l] = image.intensity[q.corner[l] + image.width + 1];
+  }
+  FOR_LANES {
+    const float i00 = i00s[l], i01 = i01s[l], i10 = i10s[l], i11 = i11s[l];
     const float du = q.u[l] - static_cast<float>(static_cast<int>(q.u[l]));
     const float dv = q.v[l] - static_cast<float>(static_cast<int>(q.v[l]));
     const float top = i00 + du * (i01 - i00), bottom = i10 + du * (i11 - i10);
