@@ -13,29 +13,29 @@ struct Disc {
   float offset;           ///< n . (x, y, z): the disc's plane
   float inverse_radius2;  ///< 1 / radius^2
   std::int16_t first_u, last_u, first_v, last_v;
+  float intensity, confidence;
   std::uint32_t slot;  ///< of its surfel in its block
   bool stable;
 };
 
 /// Where a ray meets a disc.
 struct Hit {
-  float depth = 0;     ///< along the optical axis; 0 when the ray misses
-  float distance = 0;  ///< from the disc's centre, as part of its radius, squared
+  float depth;     ///< along the optical axis
+  float distance;  ///< from the disc's centre, as part of its radius, squared
+  int is_hit;      ///< 0 where the ray misses: the others then mean nothing
 };
 
-/// The ray is (ray_x, ray_y, 1).
+/// The ray is (ray_x, ray_y, 1). Without branches, so that it can become SIMD code.
 inline Hit intersect(const Disc& d, float ray_x, float ray_y) {
   // A disc seen under a flatter angle than this is drawn as if it faced the camera: the plane
   // intersection is of no use there.
   constexpr float kMinCosine = 0.15F;
   const float cosine = d.nx * ray_x + d.ny * ray_y + d.nz;  // times the length of the ray
-  const bool steep =
-      cosine * cosine < kMinCosine * kMinCosine * (ray_x * ray_x + ray_y * ray_y + 1);
-  const float depth = steep ? d.z : d.offset / cosine;
+  const float least = kMinCosine * kMinCosine * (ray_x * ray_x + ray_y * ray_y + 1);
+  const float depth = cosine * cosine < least ? d.z : d.offset / cosine;
   const float dx = ray_x * depth - d.x, dy = ray_y * depth - d.y, dz = depth - d.z;
   const float distance = (dx * dx + dy * dy + dz * dz) * d.inverse_radius2;
-  if (distance > 1.0F || depth < kNear_m) return {};
-  return {depth, distance};
+  return {depth, distance, static_cast<int>(distance <= 1.0F) & static_cast<int>(depth >= kNear_m)};
 }
 
 /// The rays through the pixels of a camera.
@@ -55,16 +55,20 @@ struct Rays {
   int width, height;
 };
 
-/// Calls found(pixel, hit) for each pixel whose ray meets the disc.
-template <typename Found>
-void splat(const Disc& d, const Rays& rays, const Found& found) {
-  for (int v = d.first_v; v <= d.last_v; ++v) {
-    const float ray_y = rays.y(v);
-    for (int u = d.first_u; u <= d.last_u; ++u) {
-      const Hit hit = intersect(d, rays.x(u), ray_y);
-      if (hit.depth > 0) found(v * rays.width + u, hit);
-    }
-  }
+/// A pixel whose ray meets a disc.
+struct PixelHit {
+  std::int32_t pixel;  ///< v * width + u
+  std::uint32_t disc;  ///< its place among those splatted
+  float depth, distance;
+};
+
+/// Rays that `splat` tries at most.
+inline std::size_t raysAt(const Disc& d) {
+  return static_cast<std::size_t>(d.last_u - d.first_u + 1) * (d.last_v - d.first_v + 1);
 }
+
+/// Finds the pixels whose rays meet the discs; returns their number. `hits` has room for
+/// raysAt() of all discs, and one more.
+std::size_t splat(const Disc* discs, std::size_t count, const Rays& rays, PixelHit* hits);
 
 }  // namespace pf

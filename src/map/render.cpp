@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/map/render.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -35,10 +37,12 @@ inline float valueOf(std::uint64_t key) {
   return value;
 }
 
-inline void keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
+/// Returns what the slot then holds.
+inline std::uint64_t keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
   std::uint64_t old = slot.load(std::memory_order_relaxed);
   while (key < old && !slot.compare_exchange_weak(old, key, std::memory_order_relaxed)) {
   }
+  return std::min(old, key);
 }
 
 void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color, ModelView& view) {
@@ -57,36 +61,54 @@ void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color
   }
 }
 
-/// Fills a pixel from the disc that it shows; `d` is null where it shows none.
-void resolvePixel(const Disc* d, const SurfelArrays* s, const Rays& rays, int u, int v,
-                  ModelView& view) {
-  const std::uint32_t i = d != nullptr ? d->slot : 0;
-  view.stable.at<std::uint8_t>(v, u) = d != nullptr && d->stable ? 1 : 0;
-  view.depth_m.at<float>(v, u) = d != nullptr ? intersect(*d, rays.x(u), rays.y(v)).depth : 0.0F;
-  view.normal_x.at<float>(v, u) = d != nullptr ? d->nx : 0.0F;
-  view.normal_y.at<float>(v, u) = d != nullptr ? d->ny : 0.0F;
-  view.normal_z.at<float>(v, u) = d != nullptr ? d->nz : 0.0F;
-  view.intensity.at<float>(v, u) =
-      d != nullptr ? 0.299F * s->r[i] + 0.587F * s->g[i] + 0.114F * s->b[i] : 0.0F;
-  view.support.at<float>(v, u) = d != nullptr ? s->confidence[i] : 0.0F;
-  if (view.color.empty()) return;
-  view.color.at<cv::Vec3b>(v, u) = d != nullptr
-                                       ? cv::Vec3b(cv::saturate_cast<unsigned char>(s->r[i]),
-                                                   cv::saturate_cast<unsigned char>(s->g[i]),
-                                                   cv::saturate_cast<unsigned char>(s->b[i]))
-                                       : cv::Vec3b(0, 0, 0);
+/// Fills pixel (u, v) from the disc that it shows.
+void showDisc(const Disc& d, const Rays& rays, int u, int v, ModelView& view) {
+  view.stable.at<std::uint8_t>(v, u) = d.stable ? 1 : 0;
+  view.depth_m.at<float>(v, u) = intersect(d, rays.x(u), rays.y(v)).depth;
+  view.normal_x.at<float>(v, u) = d.nx;
+  view.normal_y.at<float>(v, u) = d.ny;
+  view.normal_z.at<float>(v, u) = d.nz;
+  view.intensity.at<float>(v, u) = d.intensity;
+  view.support.at<float>(v, u) = d.confidence;
+}
+
+void showNothing(int u, int v, ModelView& view) {
+  view.stable.at<std::uint8_t>(v, u) = 0;
+  for (cv::Mat* plane : {&view.depth_m, &view.normal_x, &view.normal_y, &view.normal_z,
+                         &view.intensity, &view.support}) {
+    plane->at<float>(v, u) = 0.0F;
+  }
+}
+
+cv::Vec3b colorOf(const SurfelArrays& s, std::uint32_t i) {
+  return {cv::saturate_cast<unsigned char>(s.r[i]), cv::saturate_cast<unsigned char>(s.g[i]),
+          cv::saturate_cast<unsigned char>(s.b[i])};
+}
+
+/// A hit that may be what its pixel shows.
+struct Candidate {
+  std::uint64_t key;  ///< by the distance from the disc's centre
+  int pixel;
+  float depth;
+};
+
+/// Is a disc of the surface that a pixel shows, as far as `nearest` tells it?
+inline bool isOfNearest(std::uint64_t nearest, bool stable, float depth) {
+  const float front = valueOf(nearest);
+  return stableOf(nearest) == stable && depth <= front + surfaceThickness(front);
 }
 
 }  // namespace
 
-/// What is kept between calls. Range k owns the discs from k * kRangeSurfels on.
+/// What is kept between calls. Range k owns the discs from k * kRangeSurfels on, and candidates[k].
 struct SurfelRenderer::Buffers {
   using Keys = std::unique_ptr<std::atomic<std::uint64_t>[]>;
   Keys nearest, chosen;  // per pixel
   std::size_t pixels = 0;
   std::unique_ptr<Disc[]> discs;  // never initialised as a whole: most of it is never touched
   std::size_t disc_capacity = 0;
-  std::vector<std::uint32_t> counts;  // discs of each range
+  std::vector<std::vector<Candidate>> candidates;  // of each range
+  tbb::enumerable_thread_specific<std::vector<PixelHit>> hits;
 
   void prepare(std::size_t pixel_count, std::size_t range_count) {
     if (pixels != pixel_count) {
@@ -94,7 +116,7 @@ struct SurfelRenderer::Buffers {
       chosen = std::make_unique<std::atomic<std::uint64_t>[]>(pixel_count);
       pixels = pixel_count;
     }
-    counts.assign(range_count, 0);
+    if (candidates.size() < range_count) candidates.resize(range_count);
     if (disc_capacity < range_count * kRangeSurfels) {
       disc_capacity = (range_count + range_count / 4) * kRangeSurfels;
       discs.reset(new Disc[disc_capacity]);
@@ -107,11 +129,32 @@ struct SurfelRenderer::Buffers {
     });
   }
 
-  /// Calls visit(disc number, disc) for the discs of a range.
-  template <typename Visit>
-  void forDiscs(std::size_t range, const Visit& visit) const {
+  /// Finds what is nearest in each pixel, and keeps the hits that may be of that surface.
+  void splatRange(std::size_t range, std::uint32_t count, const Rays& rays) {
+    candidates[range].clear();
     const std::size_t first = range * kRangeSurfels;
-    for (std::size_t d = first; d < first + counts[range]; ++d) visit(d, discs[d]);
+    std::size_t room = 1;
+    for (std::size_t k = first; k < first + count; ++k) room += raysAt(discs[k]);
+    std::vector<PixelHit>& found = hits.local();
+    if (found.size() < room) found.resize(room);
+    const std::size_t hit_count = splat(&discs[first], count, rays, found.data());
+    for (std::size_t k = 0; k < hit_count; ++k) {
+      const PixelHit& hit = found[k];
+      const std::size_t number = first + hit.disc;
+      const bool stable = discs[number].stable;
+      const std::uint64_t front = keepSmaller(nearest[hit.pixel], keyOf(stable, hit.depth, number));
+      if (!isOfNearest(front, stable, hit.depth)) continue;  // what is nearest only comes nearer
+      candidates[range].push_back({keyOf(stable, hit.distance, number), hit.pixel, hit.depth});
+    }
+  }
+
+  /// Of the hits on the nearest surface, finds each pixel's closest to a disc's centre.
+  void choose(std::size_t range) {
+    for (const Candidate& hit : candidates[range]) {
+      const std::uint64_t front = nearest[hit.pixel].load(std::memory_order_relaxed);
+      if (!isOfNearest(front, stableOf(hit.key), hit.depth)) continue;
+      keepSmaller(chosen[hit.pixel], hit.key);
+    }
   }
 };
 
@@ -128,36 +171,28 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   b.prepare(static_cast<std::size_t>(camera.width) * camera.height, ranges.size());
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      b.counts[k] = maker.make(ranges[k], &b.discs[k * kRangeSurfels]);
-      b.forDiscs(k, [&](std::size_t number, const Disc& d) {
-        splat(d, rays, [&](int pixel, const Hit& hit) {
-          keepSmaller(b.nearest[pixel], keyOf(d.stable, hit.depth, number));
-        });
-      });
+      b.splatRange(k, maker.make(ranges[k], &b.discs[k * kRangeSurfels]), rays);
     }
   });
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      b.forDiscs(k, [&](std::size_t number, const Disc& d) {
-        splat(d, rays, [&](int pixel, const Hit& hit) {
-          const std::uint64_t nearest = b.nearest[pixel].load(std::memory_order_relaxed);
-          const float depth = valueOf(nearest);
-          if (stableOf(nearest) != d.stable || hit.depth > depth + surfaceThickness(depth)) return;
-          keepSmaller(b.chosen[pixel], keyOf(d.stable, hit.distance, number));
-        });
-      });
-    }
+    for (std::size_t k = begin; k < end; ++k) b.choose(k);
   });
   prepare(camera, T_map_camera, options.with_color, view);
   parallelFor(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const std::uint64_t key = b.chosen[v * camera.width + u].load(std::memory_order_relaxed);
-        const bool hit = key != kNothing;
+        if (options.with_color) view.color.at<cv::Vec3b>(v, u) = {0, 0, 0};
+        if (key == kNothing) {
+          showNothing(u, v, view);
+          continue;
+        }
         const auto number = static_cast<std::uint32_t>(key);
-        const std::uint32_t block = hit ? ranges[number / kRangeSurfels].block : 0;
-        resolvePixel(hit ? &b.discs[number] : nullptr, hit ? &map.blocks()[block].surfels : nullptr,
-                     rays, u, v, view);
+        const Disc& disc = b.discs[number];
+        showDisc(disc, rays, u, v, view);
+        if (!options.with_color) continue;
+        const SurfelBlock& block = map.blocks()[ranges[number / kRangeSurfels].block];
+        view.color.at<cv::Vec3b>(v, u) = colorOf(block.surfels, disc.slot);
       }
     }
   });
