@@ -8,15 +8,13 @@
 #include <cstring>
 
 #include "disc_maker.hpp"
+#include "pixel_minima.hpp"
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/map/visibility.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::size_t kPixelGrain = 1 << 14;
-constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 
 /// Discs closer together than this (m) belong to one surface.
 inline float surfaceThickness(float z) { return surfaceTolerance(z, 5.0F); }
@@ -35,14 +33,6 @@ inline float valueOf(std::uint64_t key) {
   float value = 0;
   std::memcpy(&value, &bits, sizeof value);
   return value;
-}
-
-/// Returns what the slot then holds.
-inline std::uint64_t keepSmaller(std::atomic<std::uint64_t>& slot, std::uint64_t key) {
-  std::uint64_t old = slot.load(std::memory_order_relaxed);
-  while (key < old && !slot.compare_exchange_weak(old, key, std::memory_order_relaxed)) {
-  }
-  return std::min(old, key);
 }
 
 void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color, ModelView& view) {
@@ -102,31 +92,20 @@ inline bool isOfNearest(std::uint64_t nearest, bool stable, float depth) {
 
 /// What is kept between calls. Range k owns the discs from k * kRangeSurfels on, and candidates[k].
 struct SurfelRenderer::Buffers {
-  using Keys = std::unique_ptr<std::atomic<std::uint64_t>[]>;
-  Keys nearest, chosen;  // per pixel
-  std::size_t pixels = 0;
+  PixelMinima nearest, chosen;
   std::unique_ptr<Disc[]> discs;  // never initialised as a whole: most of it is never touched
   std::size_t disc_capacity = 0;
   std::vector<std::vector<Candidate>> candidates;  // of each range
   tbb::enumerable_thread_specific<std::vector<PixelHit>> hits;
 
   void prepare(std::size_t pixel_count, std::size_t range_count) {
-    if (pixels != pixel_count) {
-      nearest = std::make_unique<std::atomic<std::uint64_t>[]>(pixel_count);
-      chosen = std::make_unique<std::atomic<std::uint64_t>[]>(pixel_count);
-      pixels = pixel_count;
-    }
+    nearest.clear(pixel_count);
+    chosen.clear(pixel_count);
     if (candidates.size() < range_count) candidates.resize(range_count);
     if (disc_capacity < range_count * kRangeSurfels) {
       disc_capacity = (range_count + range_count / 4) * kRangeSurfels;
       discs.reset(new Disc[disc_capacity]);
     }
-    parallelFor(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        nearest[i].store(kNothing, std::memory_order_relaxed);
-        chosen[i].store(kNothing, std::memory_order_relaxed);
-      }
-    });
   }
 
   /// Finds what is nearest in each pixel, and keeps the hits that may be of that surface.
@@ -137,12 +116,14 @@ struct SurfelRenderer::Buffers {
     for (std::size_t k = first; k < first + count; ++k) room += raysAt(discs[k]);
     std::vector<PixelHit>& found = hits.local();
     if (found.size() < room) found.resize(room);
+    std::uint64_t* own = nearest.own();
     const std::size_t hit_count = splat(&discs[first], count, rays, found.data());
     for (std::size_t k = 0; k < hit_count; ++k) {
       const PixelHit& hit = found[k];
       const std::size_t number = first + hit.disc;
       const bool stable = discs[number].stable;
-      const std::uint64_t front = keepSmaller(nearest[hit.pixel], keyOf(stable, hit.depth, number));
+      std::uint64_t& front = own[hit.pixel];
+      front = std::min(front, keyOf(stable, hit.depth, number));
       if (!isOfNearest(front, stable, hit.depth)) continue;  // what is nearest only comes nearer
       candidates[range].push_back({keyOf(stable, hit.distance, number), hit.pixel, hit.depth});
     }
@@ -150,10 +131,10 @@ struct SurfelRenderer::Buffers {
 
   /// Of the hits on the nearest surface, finds each pixel's closest to a disc's centre.
   void choose(std::size_t range) {
+    std::uint64_t* own = chosen.own();
     for (const Candidate& hit : candidates[range]) {
-      const std::uint64_t front = nearest[hit.pixel].load(std::memory_order_relaxed);
-      if (!isOfNearest(front, stableOf(hit.key), hit.depth)) continue;
-      keepSmaller(chosen[hit.pixel], hit.key);
+      if (!isOfNearest(nearest[hit.pixel], stableOf(hit.key), hit.depth)) continue;
+      own[hit.pixel] = std::min(own[hit.pixel], hit.key);
     }
   }
 };
@@ -174,16 +155,18 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
       b.splatRange(k, maker.make(ranges[k], &b.discs[k * kRangeSurfels]), rays);
     }
   });
+  b.nearest.combine();
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) b.choose(k);
   });
+  b.chosen.combine();
   prepare(camera, T_map_camera, options.with_color, view);
   parallelFor(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       for (int u = 0; u < camera.width; ++u) {
-        const std::uint64_t key = b.chosen[v * camera.width + u].load(std::memory_order_relaxed);
+        const std::uint64_t key = b.chosen[static_cast<std::size_t>(v) * camera.width + u];
         if (options.with_color) view.color.at<cv::Vec3b>(v, u) = {0, 0, 0};
-        if (key == kNothing) {
+        if (key == PixelMinima::kNothing) {
           showNothing(u, v, view);
           continue;
         }
