@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/graph/fragments.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
 
@@ -64,13 +65,17 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
 }  // namespace
 
 std::size_t saveMap(const std::string& path, const SurfelMap& map) {
-  const std::size_t count = map.stableCount();
+  const auto is_written = [&](const SurfelArrays& s, std::size_t i) {
+    return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
+  };
+  std::size_t count = 0;
+  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += is_written(s, i); });
   AtomicFile file(path);
   file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
                              "surfels of posefusion: map frame, metres");
   std::array<char, kVertexBytes> vertex{};
   map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
-    if (!map.isStable(surfels, i)) return;
+    if (!is_written(surfels, i)) return;
     pack(surfels, i, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
   });

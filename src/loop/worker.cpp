@@ -24,7 +24,6 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   }
   if (!question.corrected.empty()) closer_.setPoses(question.corrected);
   if (question.keyframe) {
-    map_.reset();  // mapping goes on: the copy made at the loss is of no more use
     if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
     closer_.addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();
@@ -42,9 +41,9 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
 }
 
 std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
-  if (map_ != question.map) {
+  if (map_.lock() != question.map) {
     map_ = question.map;
-    points_ = thinnedPoints(*map_);
+    points_ = thinnedPoints(*question.map);
     const Eigen::Vector3d upright = question.T_map_last.linear() * -Eigen::Vector3d::UnitY();
     const auto levels = findLevels(orientedPoints(points_), upright, kUpright_rad);
     up_ = levels ? levels->up : upright;
@@ -60,7 +59,7 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
   const std::size_t most = question.elsewhere.empty() ? kVerified : kVerifiedElsewhere;
-  PlaceVerdict verdict = verifier_.verifyBest(*map_, question.frame, candidates, most);
+  PlaceVerdict verdict = verifier_.verifyBest(*question.map, question.frame, candidates, most);
   if (!verdict.accepted()) return std::nullopt;
   return verdict;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "posefusion/graph/fragments.hpp"
+
 namespace posefusion_ros {
 namespace {
 
@@ -54,7 +56,7 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
   cloud->data.resize((stable + step - 1) / step * sizeof(Point));
   std::size_t seen = 0, count = 0;
   map.forEachSurfel([&](const pf::SurfelArrays& s, std::size_t i) {
-    if (!map.isStable(s, i) || seen++ % step != 0) return;
+    if (!map.isStable(s, i) || seen++ % step != 0 || pf::fragmentAt(s.x[i]) != 0) return;
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
     const Point point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
@@ -62,6 +64,7 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                       s.confidence[i]};
     std::memcpy(&cloud->data[count++ * sizeof(Point)], &point, sizeof(Point));
   });
+  cloud->data.resize(count * sizeof(Point));  // without those of other fragments
   cloud->width = static_cast<std::uint32_t>(count);
   cloud->row_step = cloud->width * cloud->point_step;
   return cloud;

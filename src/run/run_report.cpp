@@ -56,6 +56,7 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
           {"compared", c.compared},
           {"accepted", c.accepted},
           {"corrections", corrections.accepted},
+          {"fragments_joined", corrections.joined},
           {"refused", refused},
           {"places_searched", c.searched},
           {"places_found", c.found}};

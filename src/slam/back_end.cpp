@@ -2,12 +2,13 @@
 #include "posefusion/slam/back_end.hpp"
 
 #include <limits>
+#include <utility>
 
 #include "posefusion/core/se3.hpp"
+#include "posefusion/graph/fragments.hpp"
 
 namespace pf {
 
-/// The keyframe that saw the map from about this pose.
 int BackEnd::nearest(const Eigen::Isometry3d& T_map_camera) const {
   int nearest = 0;
   double least = std::numeric_limits<double>::max();
@@ -26,7 +27,8 @@ int BackEnd::add(const FusedFrame& frame) {
   keyframe.stamp_ns = frame.stamp_ns;
   keyframe.map_frame = frame.map_frame;
   keyframe.T_map_camera = frame.T_map_camera;
-  if (graph_.keyframes().empty()) return graph_.addKeyframe(keyframe);
+  keyframe.fragment = fragmentAt(frame.T_map_camera);
+  if (graph_.keyframes().empty() || frame.begins_fragment) return graph_.addKeyframe(keyframe);
   if (frame.is_return) {
     return graph_.addKeyframe(keyframe, nearest(frame.T_map_camera), frame.covariance);
   }
@@ -43,21 +45,36 @@ void BackEnd::record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camer
   frames_.push_back({stamp_ns, {last.id, last.T_map_camera.inverse() * T_map_camera}});
 }
 
-GraphResult BackEnd::close(const std::vector<LoopConstraint>& loops) {
+std::vector<Deformation> BackEnd::close(const std::vector<LoopConstraint>& loops) {
+  std::vector<Deformation> deformations;
+  const auto take = [&](GraphResult result) {
+    counts_.accepted += result.accepted ? 1 : 0;
+    counts_.refused += result.refused.size();
+    if (result.accepted) deformations.push_back(std::move(result.deformation));
+    return result.accepted;
+  };
+  const auto fragmentOf = [&](int keyframe) {
+    return graph_.keyframes().at(static_cast<std::size_t>(keyframe)).fragment;
+  };
   for (const LoopConstraint& loop : loops) {
-    graph_.addLoop({static_cast<int>(loop.from), static_cast<int>(loop.to), loop.T_from_to,
-                    loop.covariance, ConstraintKind::loop});
+    const PoseConstraint constraint{static_cast<int>(loop.from), static_cast<int>(loop.to),
+                                    loop.T_from_to, loop.covariance, ConstraintKind::loop};
+    if (fragmentOf(constraint.from) == fragmentOf(constraint.to)) {
+      graph_.addLoop(constraint);
+    } else if (take(graph_.joinFragment(constraint))) {
+      ++counts_.joined;
+    }
   }
-  GraphResult result = graph_.optimise();
-  counts_.accepted += result.accepted ? 1 : 0;
-  counts_.refused += result.refused.size();
-  return result;
+  take(graph_.optimise());
+  return deformations;
 }
 
 Trajectory BackEnd::trajectory() const {
   Trajectory poses;
   poses.reserve(frames_.size() - loaded_frames_);
   for (std::size_t i = loaded_frames_; i < frames_.size(); ++i) {
+    const auto keyframe = static_cast<std::size_t>(frames_[i].pose.keyframe);
+    if (graph_.keyframes()[keyframe].fragment != 0) continue;  // nobody knows where that is
     poses.push_back({frames_[i].stamp_ns, graph_.poseOf(frames_[i].pose)});
   }
   return poses;

@@ -41,9 +41,11 @@ Matrix6d diagonal(double sigma_m, double sigma_rad) {
 Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
 
 Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
-                          const Eigen::Isometry3d& T_map_camera) {
+                          const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
+  reset();
   Location location;
   location.T_map_camera = location.tracking.T_map_camera = T_map_camera;
+  location.tracking.brightness = brightness;
   location.tracking.converged = true;
   trust(location, stamp_ns, 0.0);
   remember(frame, {}, {T_map_camera}, location, stamp_ns);

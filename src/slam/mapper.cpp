@@ -99,17 +99,22 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
   status.detail = s.defect(input);
   if (!status.detail.empty()) return status;
+  const double elapsed_s = 1e-9 * static_cast<double>(input.frame.stamp_ns - s.last_stamp_ns);
   s.last_stamp_ns = input.frame.stamp_ns;
   Stopwatch watch;
   s.frame.assign(input.frame, input.mask, s.config.frame);
-  const Location location = s.locate(input);
+  Location location = s.locate(input);
+  s.countLostTime(location, elapsed_s);
+  if (s.wantsFragment(input, location)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
   s.question.reset();
   if (location.outcome == FrameOutcome::fused && !s.may_change) {
     s.follow(location);
   } else if (location.outcome == FrameOutcome::fused) {
+    if (location.is_return) s.fragment = fragmentAt(location.T_map_camera);
     s.fuse(input, location);
     s.keep(input, location);
+    s.askForFragment();
   } else if (location.state == TrackingState::lost) {
     s.askForPlace();
   }
@@ -117,7 +122,8 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   status.fusion_ms = watch.lapMs();
   status.state = location.state;
   status.outcome = location.outcome;
-  status.located = location.located;
+  status.located = location.located && s.fragment == 0;
+  status.fragment = s.fragment;
   status.detail = location.detail;
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
@@ -141,6 +147,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.T_map_camera =
       state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
   status.surfels = state_->map.size();
+  status.fragment = state_->fragment;
   status.map_version = state_->back_end.graph().version();
   status.map_full = state_->map.refused() > 0;
   return status;
@@ -178,6 +185,10 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();
+  s.fragment = s.last_fragment = s.frames_to_place = 0;
+  s.lost_s = 0;
+  s.at_question = {};
+  s.seen_at.reset();
 }
 
 }  // namespace pf

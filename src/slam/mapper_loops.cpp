@@ -14,7 +14,8 @@ namespace {
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
 
-/// Poses from which a search reaches around all of these; the last ones first.
+}  // namespace
+
 std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses) {
   std::vector<Eigen::Isometry3d> chosen;
   for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
@@ -26,18 +27,19 @@ std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& p
   return chosen;
 }
 
-}  // namespace
-
 /// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
 void Mapper::State::keep(const StaticFrame& input, const Location& location) {
-  map_at_loss.reset();
-  rooms.clear();
+  if (fragment == 0) {
+    map_at_loss.reset();
+    rooms.clear();
+  }
   FusedFrame fused;
   fused.stamp_ns = last_stamp_ns;
   fused.map_frame = map.frame();
   fused.T_map_camera = location.T_map_camera;
   fused.covariance = location.tracking.covariance;
   fused.is_return = location.is_return;
+  fused.begins_fragment = fragment != 0 && fragment != back_end.graph().keyframes().back().fragment;
   const int id = back_end.add(fused);
   if (id < 0) return;
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
@@ -63,28 +65,32 @@ void Mapper::State::askForPlace() {
     return;
   }
   if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
-  question.emplace();
+  if (!question) question.emplace();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
   }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();
+  at_question = {};
   place_is_asked = true;
   place_is_stale = false;
 }
 
 void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
-  const GraphResult result = back_end.close(loops);
-  if (!result.accepted || result.deformation.isIdentity()) return;
-  const Eigen::Isometry3d T_new_old = result.deformation.at(map.frame());
-  deform(map, result.deformation);
-  localiser.move(T_new_old);
-  const bool is_fused = view.stamp_ns == last_stamp_ns;
-  showFrom(T_new_old * view.T_map_camera, is_fused);
-  keyframes_moved = true;
-  map_at_loss.reset();
-  place_is_stale = true;
+  for (const Deformation& deformation : back_end.close(loops)) {
+    if (deformation.isIdentity()) continue;
+    const Eigen::Isometry3d T_new_old = deformation.at(map.frame());
+    deform(map, deformation);
+    localiser.move(T_new_old);
+    const bool is_fused = view.stamp_ns == last_stamp_ns;
+    showFrom(T_new_old * view.T_map_camera, is_fused);
+    keyframes_moved = true;
+    map_at_loss.reset();
+    seen_at.reset();
+    place_is_stale = true;
+  }
+  fragment = fragmentAt(localiser.lastPose());
 }
 
 std::optional<LoopQuestion> Mapper::takeQuestion() {
@@ -97,6 +103,7 @@ void Mapper::take(const LoopAnswer& answer) {
     s.place_is_asked = false;
     if (answer.place && !s.place_is_stale) {
       s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
+      if (s.at_question.keyframe >= 0) s.placeFragment(answer.place->alignment);
     }
   }
   if (!answer.loops.empty()) s.correct(answer.loops);
@@ -122,6 +129,9 @@ void Mapper::load(SavedMap saved, MapUse use) {
   s.closer_is_old = true;
   const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
   s.rooms = spreadOut(poses);
+  for (const Eigen::Isometry3d& pose : poses) {
+    s.last_fragment = std::max(s.last_fragment, fragmentAt(pose));
+  }
   s.localiser.beginLost(poses.back(), saved.brightness);
   s.showFrom(poses.back(), false);
 }

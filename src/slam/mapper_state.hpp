@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/graph/fragments.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -17,8 +18,17 @@ namespace pf {
 
 constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 
+/// Poses from which a search reaches around all of these; the last ones first.
+std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses);
+
+/// Where a keyframe of a fragment would lie in the rest of the map.
+struct FragmentPlace {
+  LoopConstraint constraint;
+  Eigen::Isometry3d T_map_fragment;
+};
+
 /// The mapper's parts: frames are located and fused in mapper.cpp; what is asked of the loop closer
-/// and what its answers do stands in mapper_loops.cpp.
+/// and what its answers do stands in mapper_loops.cpp, fragments in mapper_fragments.cpp.
 struct Mapper::State {
   explicit State(const Config& c)
       : config(c), map(c.map), localiser(c.tracking), back_end(c.graph) {}
@@ -46,6 +56,13 @@ struct Mapper::State {
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
   bool place_is_asked = false, place_is_stale = false;
+  // Of a piece of the map whose place is not known.
+  int fragment = 0;                      ///< that the camera is in
+  int last_fragment = 0;                 ///< number of the last one begun
+  double lost_s = 0;                     ///< since the last frame that was believed
+  int frames_to_place = 0;               ///< until the next question where the fragment is
+  RelativePose at_question;              ///< of the frame that was asked about
+  std::optional<FragmentPlace> seen_at;  ///< told once, not yet twice
 
   std::string defect(const StaticFrame& input) const;
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
@@ -55,6 +72,11 @@ struct Mapper::State {
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void askForPlace();
+  void countLostTime(const Location& location, double elapsed_s);
+  bool wantsFragment(const StaticFrame& input, const Location& location) const;
+  Location beginFragment();
+  void askForFragment();
+  void placeFragment(const TrackingResult& alignment);
   void correct(const std::vector<LoopConstraint>& loops);
 };
 

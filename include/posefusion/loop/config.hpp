@@ -16,6 +16,7 @@ struct LoopConfig {
   double near_m = 1.5;
   int feature_pairs = 6;
   int answer_lag_frames = 10;
+  double new_fragment_after_s = 4.0;
 };
 
 inline void visitFields(LoopConfig& c, FieldVisitor& v) {
@@ -35,6 +36,9 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
   v.integer("answer_lag_frames", c.answer_lag_frames, 1, 1000,
             "frames between a question to the loop closer and its answer, offline and in lossless "
             "replay");
+  v.number("new_fragment_after_s", c.new_fragment_after_s, 0.0, 1e6,
+           "a camera lost for so long begins a new piece of the map, until it is known where that "
+           "is; 0: never");
 }
 
 }  // namespace pf

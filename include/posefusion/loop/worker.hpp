@@ -59,7 +59,7 @@ class LoopWorker {
   PlaceVerifier verifier_;
   LoopCounts counts_;
   // Of the map that was last searched in.
-  std::shared_ptr<const SurfelMap> map_;
+  std::weak_ptr<const SurfelMap> map_;  ///< that points_ and up_ are of
   MapPoints points_;
   Eigen::Vector3d up_ = Eigen::Vector3d::Zero();
 };

@@ -18,7 +18,8 @@ struct FusedFrame {
   std::int32_t map_frame = 0;  ///< SurfelMap::frame() that its surfels have
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
-  bool is_return = false;  ///< found again: tied to the nearest keyframe, not to the last
+  bool is_return = false;        ///< found again: tied to the nearest keyframe, not to the last
+  bool begins_fragment = false;  ///< tied to none
 };
 
 /// The keyframes, the graph that ties them, and the poses that hang on them. A frame's pose is kept
@@ -34,16 +35,21 @@ class BackEnd {
         loaded_frames_(frames_.size()),
         loaded_keyframes_(graph_.keyframes().size()) {}
 
+  /// The keyframe that saw the map from about this pose.
+  int nearest(const Eigen::Isometry3d& T_map_camera) const;
+
   /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1.
   int add(const FusedFrame& frame);
 
   /// Keeps the pose of a located frame (fused or not); nothing before the first keyframe.
   void record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera);
 
-  /// Closes loops between keyframes; says what became of it.
-  GraphResult close(const std::vector<LoopConstraint>& loops);
+  /// Closes loops between keyframes, and joins the fragments that they lead between. Returns what
+  /// the map is to follow, in that order.
+  std::vector<Deformation> close(const std::vector<LoopConstraint>& loops);
 
-  /// The poses of all frames recorded here (not of loaded ones) as they are known now.
+  /// The poses of the frames recorded here (not of loaded ones) as they are known now, without
+  /// those of fragments whose place is not known.
   Trajectory trajectory() const;
 
   /// All recorded frames, loaded ones first.
@@ -58,12 +64,11 @@ class BackEnd {
   struct Counts {
     std::size_t accepted = 0;  ///< corrections of the graph
     std::size_t refused = 0;   ///< loops that do not fit with the others
+    std::size_t joined = 0;    ///< fragments whose place was found
   };
   const Counts& counts() const { return counts_; }
 
  private:
-  int nearest(const Eigen::Isometry3d& T_map_camera) const;
-
   PoseGraph graph_;
   std::vector<FrameRecord> frames_;
   std::size_t loaded_frames_ = 0, loaded_keyframes_ = 0;

@@ -44,9 +44,9 @@ class Localiser {
  public:
   explicit Localiser(const TrackingConfig& config);
 
-  /// The first frame of a map.
+  /// The first frame of a map, or of a fragment of it: what was before is forgotten.
   Location begin(const WorkingFrame& frame, std::int64_t stamp_ns,
-                 const Eigen::Isometry3d& T_map_camera);
+                 const Eigen::Isometry3d& T_map_camera, const Brightness& brightness = {});
 
   /// A loaded map: lost, last known at `T_map_camera`. The grey levels of the map follow from those
   /// of frames by `brightness`.

@@ -42,7 +42,8 @@ struct FrameStatus {
   std::int64_t stamp_ns = 0;
   TrackingState state = TrackingState::initializing;
   FrameOutcome outcome = FrameOutcome::fused;
-  bool located = false;  ///< the pose is this frame's; else it is the last one known
+  bool located = false;  ///< the pose is this frame's, in fragment 0; else no pose is known
+  int fragment = 0;      ///< piece of the map that the pose is in (see graph/fragments.hpp)
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
   SparseMotion motion;  ///< since the frame before

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "mapper_state.hpp"
+#include "posefusion/core/se3.hpp"
+
+namespace pf {
+namespace {
+
+// However long nothing came: it is frames that say that the camera does not know the place.
+constexpr double kMostElapsed_s = 0.5;
+constexpr int kFramesToPlace = 15;  // between two questions where the fragment lies
+// Two answers in a row that place the fragment alike are believed.
+constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
+
+}  // namespace
+
+void Mapper::State::countLostTime(const Location& location, double elapsed_s) {
+  const bool lost = location.state == TrackingState::lost;
+  if (lost && lost_s == 0 && fragment != 0) map_at_loss.reset();  // the fragment belongs into it
+  lost_s = lost ? lost_s + std::min(elapsed_s, kMostElapsed_s) : 0.0;
+}
+
+/// Lost for long, and no place to come back to is being proven.
+bool Mapper::State::wantsFragment(const StaticFrame& input, const Location& location) const {
+  const double after_s = config.loop.new_fragment_after_s;
+  return config.loop.enabled && after_s > 0 && lost_s >= after_s && may_change && !input.forced &&
+         location.outcome != FrameOutcome::no_depth && location.outcome != FrameOutcome::unproven;
+}
+
+/// The frame begins a piece of the map of its own, far from all others.
+Location Mapper::State::beginFragment() {
+  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
+  rooms = spreadOut(back_end.keyframePoses());
+  fragment = ++last_fragment;
+  lost_s = 0;
+  seen_at.reset();
+  place_is_stale = true;  // what was asked was asked of a lost camera
+  Eigen::Isometry3d T_map_camera = localiser.reckonedPose();
+  T_map_camera.translation() = Eigen::Vector3d(kBetweenFragments_m * fragment, 0, 0);
+  const Brightness brightness = localiser.brightness();
+  Location location = localiser.begin(frame, last_stamp_ns, T_map_camera, brightness);
+  location.detail = "begins fragment " + std::to_string(fragment);
+  return location;
+}
+
+/// Asks now and then where in the rest of the map the fragment lies.
+void Mapper::State::askForFragment() {
+  if (fragment == 0 || --frames_to_place > 0 || place_is_asked) return;
+  frames_to_place = kFramesToPlace;
+  askForPlace();
+  if (!place_is_asked) return;
+  const Keyframe& last = back_end.graph().keyframes().back();
+  at_question = {last.id, last.T_map_camera.inverse() * localiser.lastPose()};
+}
+
+/// The frame that was asked about lies there: the fragment is joined when that is said twice.
+void Mapper::State::placeFragment(const TrackingResult& alignment) {
+  const Keyframe& keyframe =
+      back_end.graph().keyframes()[static_cast<std::size_t>(at_question.keyframe)];
+  if (keyframe.fragment != fragment) return;
+  const int other = back_end.nearest(alignment.T_map_camera);
+  const Eigen::Isometry3d& T_camera = at_question.T_keyframe_camera;
+  const Eigen::Isometry3d T_map_keyframe = alignment.T_map_camera * T_camera.inverse();
+  const Matrix6d A = adjoint(T_camera);
+  FragmentPlace place;
+  place.T_map_fragment = T_map_keyframe * keyframe.T_map_camera.inverse();
+  place.constraint.from = other;
+  place.constraint.to = keyframe.id;
+  place.constraint.T_from_to =
+      back_end.graph().keyframes()[static_cast<std::size_t>(other)].T_map_camera.inverse() *
+      T_map_keyframe;
+  place.constraint.covariance = A * alignment.covariance * A.transpose();
+  const bool again = seen_at && isWithin(T_map_keyframe.inverse() * seen_at->T_map_fragment *
+                                             keyframe.T_map_camera,
+                                         kAlike_m, kAlike_rad);
+  seen_at = place;
+  if (again) correct({place.constraint});
+}
+
+}  // namespace pf

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/graph/fragments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "posefusion/core/se3.hpp"
+#include "posefusion/map/surfel_map.hpp"
+#include "posefusion/slam/loop_thread.hpp"
+#include "posefusion/slam/mapper.hpp"
+#include "simulated_sequence.hpp"
+
+namespace pf {
+namespace {
+
+constexpr int kMapped = 60, kCovered = 20;
+
+const SimulatedSequence& room() {
+  static const SimulatedSequence drawn("empty_box", kMapped, {"depth.distortion=0"});
+  return drawn;
+}
+
+/// Maps a room, covers the camera for long, and uncovers it elsewhere.
+struct Carried {
+  explicit Carried(const Config& config, bool with_closer) : mapper_(config) {
+    if (with_closer) loops_.emplace(config.loop, config.tracking, AnswerTime::after_lag);
+    for (int i = 0; i < kMapped / 2; ++i) see(i);
+    surfels_ = stableAtHome();
+    for (int i = 0; i < kCovered; ++i) see(kMapped / 2, true);
+  }
+
+  static Config config() {
+    Config c;
+    c.frame.shrink = 1;
+    c.loop.new_fragment_after_s = 0.1;  // before the search for the place has an answer
+    c.loop.min_gap_keyframes = 1000;    // it is that search that joins, no pair of keyframes
+    return c;
+  }
+
+  const FrameStatus& see(int index, bool covered = false) {
+    StaticFrame input;
+    input.frame = room().frame(index).frame;
+    input.frame.stamp_ns = stamp_ns_ += 33333333;
+    if (covered) input.frame.depth.setTo(0);
+    status_ = mapper_.process(input);
+    if (loops_) loops_->serve(mapper_);
+    return status_;
+  }
+
+  /// Where the last frame is said to be, from where it is.
+  double errorM(int index) const {
+    return (status_.T_map_camera.translation() - room().pose(index).translation()).norm();
+  }
+
+  Mapper mapper_;
+  std::optional<LoopThread> loops_;
+  std::int64_t stamp_ns_ = 0;
+  FrameStatus status_;
+  /// Stable surfels that lie with the map's origin.
+  std::size_t stableAtHome() const {
+    const SurfelMap& map = mapper_.map();
+    std::size_t count = 0;
+    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+      count += map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
+    });
+    return count;
+  }
+
+  std::size_t surfels_ = 0;  ///< stable ones, before the loss
+};
+
+TEST(Fragments, ALostCameraMapsOnFarFromAllElse) {
+  Carried run(Carried::config(), false);
+  EXPECT_EQ(run.status_.outcome, FrameOutcome::no_depth);
+  EXPECT_EQ(run.status_.fragment, 0) << "not without anything to see";
+  for (int i = kMapped - 1; i > kMapped / 2; --i) {
+    const FrameStatus& status = run.see(i);
+    ASSERT_EQ(status.state, TrackingState::tracking) << "frame " << i;
+    EXPECT_EQ(status.fragment, 1);
+    EXPECT_FALSE(status.located) << "where it is, nobody knows";
+  }
+  EXPECT_EQ(run.stableAtHome(), run.surfels_) << "the map is as it was";
+  EXPECT_GT(run.mapper_.map().stableCount(), run.surfels_ + 1000);
+  EXPECT_EQ(run.mapper_.backEnd().trajectory().size(), std::size_t{kMapped / 2});
+}
+
+TEST(Fragments, NoneIsBegunWhereThatIsOff) {
+  for (const bool off : {true, false}) {
+    Config config = Carried::config();
+    config.loop.enabled = off;
+    if (off) config.loop.new_fragment_after_s = 0;
+    Carried run(config, false);
+    run.see(kMapped - 1);
+    EXPECT_EQ(run.status_.fragment, 0);
+    EXPECT_EQ(run.mapper_.map().stableCount(), run.surfels_);
+  }
+}
+
+TEST(Fragments, AreJoinedWhenTheirPlaceIsFound) {
+  Carried run(Carried::config(), true);
+  std::size_t frames = kMapped / 2;
+  int joined_after = 0;
+  for (int i = kMapped - 1; i >= 0; --i, ++frames) {
+    run.see(i);
+    ASSERT_EQ(run.status_.state, TrackingState::tracking) << "frame " << i;
+    if (i == kMapped - 1) EXPECT_EQ(run.status_.fragment, 1);
+    if (run.status_.fragment == 1) ++joined_after;
+  }
+  EXPECT_LT(joined_after, 50) << "frames until it is known where the fragment lies";
+  EXPECT_EQ(run.status_.fragment, 0);
+  EXPECT_TRUE(run.status_.located);
+  EXPECT_LT(run.errorM(0), 0.02);
+  EXPECT_EQ(run.mapper_.backEnd().counts().joined, 1U);
+  EXPECT_EQ(run.stableAtHome(), run.mapper_.map().stableCount()) << "all came along";
+  const Trajectory poses = run.mapper_.backEnd().trajectory();
+  ASSERT_EQ(poses.size(), frames) << "and the poses since the fragment began";
+  const Eigen::Isometry3d first = poses[kMapped / 2].T_world_camera;
+  EXPECT_LT((first.translation() - room().pose(kMapped - 1).translation()).norm(), 0.02);
+}
+
+}  // namespace
+}  // namespace pf
