@@ -70,6 +70,10 @@ void Mapper::State::askForPlace() {
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
   }
+  if (std::exchange(closer_is_old, false)) {
+    question->known.emplace(views.begin(), views.end());
+    question->corrected = back_end.keyframePoses();
+  }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();
   at_question = {};
