@@ -32,10 +32,14 @@ struct LoopAnswerMessage {
   std_msgs::Header header;
   std::uint64_t session = 0, number = 0;  ///< of the question
   std::uint64_t closer = 0;               ///< who answers
+  std::uint8_t wanted = 0;                ///< as in the wire's message
   std::uint32_t keyframe = 0;             ///< of the question
   std::string error;                      ///< empty, or there is no answer
   pf::LoopAnswer answer;
 };
+
+/// What a question wants, as flags of posefusion/Keyframe.
+std::uint8_t wantedBy(const pf::LoopQuestion& question);
 
 KeyframeMsg toWire(const LoopQuestionMessage& message);
 LoopConstraintMsg toWire(const LoopAnswerMessage& message);

@@ -51,6 +51,7 @@ class LoopCloserNodelet : public ChainNodelet {
     message->session = asked->session;
     message->number = asked->number;
     message->closer = identity_;
+    message->wanted = wantedBy(asked->question);
     const auto& keyframe = asked->question.keyframe;
     message->keyframe = keyframe ? static_cast<std::uint32_t>(keyframe->id) : 0;
     message->answer.asked_for_place = asked->question.place != nullptr;

@@ -12,12 +12,18 @@
 
 namespace posefusion_ros {
 
+std::uint8_t wantedBy(const pf::LoopQuestion& question) {
+  const int loops = question.keyframe ? KeyframeMsg::LOOPS : 0;
+  const int place = question.place ? KeyframeMsg::PLACE : 0;
+  return static_cast<std::uint8_t>(loops + place);
+}
+
 KeyframeMsg toWire(const LoopQuestionMessage& message) {
   const pf::LoopQuestion& question = message.question;
   KeyframeMsg wire;
   wire.header = message.header;
   wire.number = message.number;
-  wire.kind = question.place ? KeyframeMsg::LOST_FRAME : KeyframeMsg::KEYFRAME;
+  wire.wanted = wantedBy(question);
   for (const auto& T : question.corrected) wire.corrected.push_back(toPose(T));
   wire.known = question.known ? static_cast<std::uint32_t>(question.known->size()) : 0;
   wire.pose = toPose(question.place ? question.place->T_map_last : Eigen::Isometry3d::Identity());
@@ -37,7 +43,7 @@ LoopConstraintMsg toWire(const LoopAnswerMessage& message) {
   LoopConstraintMsg wire;
   wire.header = message.header;
   wire.number = message.number;
-  wire.kind = answer.asked_for_place ? KeyframeMsg::LOST_FRAME : KeyframeMsg::KEYFRAME;
+  wire.wanted = message.wanted;
   wire.to = message.keyframe;
   for (const pf::LoopConstraint& loop : answer.loops) {
     wire.from.push_back(static_cast<std::uint32_t>(loop.from));

@@ -104,10 +104,10 @@ void Mapper::take(const LoopAnswer& answer) {
     s.place_is_asked = false;
     if (answer.place && !s.place_is_stale) {
       s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
-      if (s.at_question.keyframe >= 0) s.placeFragment(answer.place->alignment);
+      if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(answer.place->alignment);
     }
   }
-  if (!answer.loops.empty()) s.correct(answer.loops);
+  if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
 }
 
 void Mapper::introduceCloser() { state_->closer_is_old = !state_->views.empty(); }

@@ -184,7 +184,7 @@ TEST(ChainCloser, OthersSeeQuestionsAndAnswersAsMessages) {
   std::size_t loops = 0;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const KeyframeMsg& question = questions[i];
-    EXPECT_EQ(static_cast<int>(question.kind), KeyframeMsg::KEYFRAME);
+    EXPECT_EQ(static_cast<int>(question.wanted), KeyframeMsg::LOOPS);
     EXPECT_EQ(question.keyframe, i);
     EXPECT_EQ(question.intensity.width, question.camera.width);
     EXPECT_EQ(question.depth.encoding, "16UC1");

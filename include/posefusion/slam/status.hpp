@@ -50,7 +50,6 @@ struct FrameStatus {
   std::string detail;   ///< the reason in words
   std::size_t surfels = 0;
   int map_version = 0;     ///< number of corrections by loops so far
-  int fragment = 0;        ///< piece of the world that the pose is in; 0 has the map's origin
   bool map_full = false;   ///< the memory limit keeps new surfels out
   double tracking_ms = 0;  ///< preprocessing, rendering and alignment
   double fusion_ms = 0;    ///< fusion and cleaning
