@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Simulated walks and falls: who is lost, where, and does the chain say so?"""
 import csv
+import json
 
-from bench_runs import Runs
+from bench_report import call
+from bench_runs import PROGRAMS, Runs, note
 
 WALKING_BARS_M = {"walking_static": 0.005, "walking_xyz": 0.010, "walking_halfsphere": 0.016,
                   "walking_rpy": 0.020}
@@ -54,6 +56,7 @@ class Walks(Runs):
         sequence, folder, summary = self.walk_run("loop_room", seed, people)
         track = self.check_track(name, sequence, folder)
         self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.05, digits=3)
+        self.row(f"{name}, error of the last pose", track["last_m"], "m", 0.04, digits=3)
         for count in ("keyframes", "ferns", "accepted", "corrections"):
             self.row(f"{name}, loops: {count}", summary["loops"][count], "", digits=0)
 
@@ -81,6 +84,21 @@ class Walks(Runs):
                  "%", digits=1)
         self.row(f"{name}, lost frames found of those searched", summary["loops"]["places_found"],
                  f"of {summary['loops']['places_searched']}", digits=0)
+
+    def come_back(self):
+        """How soon a camera is found in a map made before: at its start, and after a fall."""
+        for seed in self.options.seeds:
+            sequence, folder, _ = self.walk_run("loop_room", seed, "recorded")
+            note(f"looking for the camera in the map of loop_room {seed}")
+            found = json.loads(call(PROGRAMS / "posefusion_return_check", sequence, "--map",
+                                    folder / "map.pfdb"))
+            for what, median, worst in (("starts", None, 1.0), ("falls", 0.5, 2.0)):
+                name, part = f"loop_room {seed}, {what} in its map", found[what]
+                self.row(f"{name}: found", part["found"], f"of {part['trials']}", part["trials"],
+                         most=False, digits=0)
+                self.row(f"{name}: wrong", part["wrong"], "", 0, digits=0)
+                self.row(f"{name}: time to tracking, median", part["median_s"], "s", median, digits=2)
+                self.row(f"{name}: time to tracking, worst", part["worst_s"], "s", worst, digits=2)
 
     @staticmethod
     def after_loss(folder):
