@@ -210,6 +210,15 @@ class Repository(unittest.TestCase):
             found += len(named)
         self.assertGreater(found, 30)
 
+    def test_every_setting_is_used(self):
+        """A setting that only its own list knows would be believed to do something."""
+        code = "".join(path.read_text() for path in files("include", "src")
+                       if path.suffix in (".hpp", ".cpp") and path.name != "config.hpp")
+        settings = known_settings()
+        self.assertGreater(len(settings), 50)
+        dead = sorted(key for key in settings if not re.search(rf"\b{key.partition('.')[2]}\b", code))
+        self.assertEqual(dead, [])
+
     def test_options_in_readme_exist(self):
         known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench"))
         for program in ("run", "evaluate", "simulate"):
