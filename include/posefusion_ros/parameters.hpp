@@ -20,8 +20,9 @@ struct Range {
   double max = 0.0;
 };
 
-/// A private parameter of each nodelet of the chain, which unknown() leaves out: see ChainNodelet.
+/// Private parameters of each nodelet of the chain, which unknown() leaves out: see ChainNodelet.
 constexpr char kEndOnError[] = "end_on_error";
+constexpr char kDiagnosticPeriod[] = "diagnostic_period";
 
 /// The private parameters of one nodelet: its own ones, and the groups of pf::Config
 /// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by

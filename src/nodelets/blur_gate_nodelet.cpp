@@ -111,6 +111,7 @@ class BlurGateNodelet : public ChainNodelet {
         same_depth ? depth : ImageConstPtr(toImage(frame.depth, depth->encoding, header)));
     color_publisher_.publish(same_color ? color
                                         : ImageConstPtr(toImage(frame.color, "rgb8", header)));
+    passed(header.stamp);
   }
 
   void tellMissing(const ros::WallTimerEvent&) {

@@ -11,6 +11,7 @@
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/map_output.hpp"
 #include "posefusion_ros/map_saver.hpp"
+#include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
 #include "posefusion_ros/stage_messages.hpp"
@@ -151,6 +152,7 @@ class FusionNodelet : public ChainNodelet {
     std::string reason = reasonOf(status);
     if (status.located) publishPose(color->header, status, reason);
     if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
+    mapping_watch_.note(status, *mapper_, loops_->counts(), watch());
     map_output_->publishSurfels(mapper_->map(), color->header.stamp, pose_output_->mapFromStart());
     publishStatus(status, color->header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
   }
@@ -168,6 +170,7 @@ class FusionNodelet : public ChainNodelet {
 
   void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
                      std::uint8_t outcome) {
+    noteOutcome(stamp, outcome);
     std_msgs::Header header;
     header.stamp = stamp;
     header.frame_id = map_frame_;
@@ -233,6 +236,7 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<MapSaver> saver_;
   std::unique_ptr<pf::Mapper> mapper_;
   std::unique_ptr<pf::LoopThread> loops_;
+  MappingWatch mapping_watch_;
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;

@@ -69,9 +69,11 @@ class PoseDetectorNodelet : public ChainNodelet {
       pf::RecordedPeople recorded;
       if (config_.detector == "recorded") recorded = recordedPeople();
       detector_ = pf::makePoseDetector(config_, std::move(recorded));
+      watch().set("detector", config_.detector);
       NODELET_INFO("pose detector ready (%s)", config_.detector.c_str());
     } catch (const std::exception& error) {
       no_detector_ = error.what();
+      watch().tell(diagnostic_msgs::DiagnosticStatus::ERROR, "no detector: " + no_detector_);
       NODELET_ERROR("%s. %s", error.what(),
                     go_on_ ? "The chain goes on without removing people."
                            : "No frame is used (~without_people_if_no_detector: true goes on).");
@@ -119,7 +121,9 @@ class PoseDetectorNodelet : public ChainNodelet {
       reject(color->header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");
       return;
     }
+    if (people.detected) watch().set("people", std::to_string(people.people.size()));
     people_.publish(boost::make_shared<const PeopleMsg>(toMessage(people, color->header)));
+    passed(color->header.stamp);
   }
 
   pf::PoseConfig config_;

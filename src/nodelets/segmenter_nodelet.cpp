@@ -165,6 +165,8 @@ class SegmenterNodelet : public ChainNodelet {
     };
     in_map_publisher_.publish(orNobody(result.in_map_mask));
     mask_publisher_.publish(orNobody(result.mask));
+    watch().set("people", std::to_string(result.people.people.size()));
+    passed(header.stamp);
   }
 
   bool lossless_ = false;

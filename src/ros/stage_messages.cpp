@@ -100,6 +100,12 @@ TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Heade
   return message;
 }
 
+std::string outcomeName(std::uint8_t outcome) {
+  if (outcome == TrackingStatusMsg::DROPPED) return "dropped";
+  if (outcome == TrackingStatusMsg::NO_DETECTOR) return "no_detector";
+  return std::string(pf::name(static_cast<pf::FrameOutcome>(outcome)));
+}
+
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q(T.linear());
   geometry_msgs::Pose pose;
