@@ -25,9 +25,10 @@ struct MapSaverSettings {
 /// Reads `output`, `save_period_s` and `maps_kept`.
 MapSaverSettings readMapSaver(Parameters& parameters);
 
-/// Writes map.ply and trajectory.txt, in the core's map frame (the first camera pose), as the
-/// offline runner does. Each map gets a pf::RunFolder of its own, so that none is written over by
-/// another. Until it is saved, trajectory.partial.txt grows there pose by pose.
+/// Writes map.ply and trajectory.txt in the map frame of TF; where no robot says otherwise that is
+/// the frame in which the offline runner writes them. Each map gets a pf::RunFolder of its own, so
+/// that none is written over by another. Until it is saved, trajectory.partial.txt grows there pose
+/// by pose.
 class MapSaver {
  public:
   /// Where an output was named, throws InputError when nothing can be written there.
@@ -36,6 +37,9 @@ class MapSaver {
 
   /// The user named a folder: save at the end too.
   bool isOn() const { return !settings_.output.empty(); }
+
+  /// The core's map in the map frame, once it is known; until then the first camera is level.
+  void setFrame(const Eigen::Isometry3d& T_map_start) { T_map_start_ = T_map_start; }
 
   /// Returns a sentence that tells what was written where. Throws InputError when there is nothing
   /// to save, or naming what cannot be written.
@@ -66,6 +70,7 @@ class MapSaver {
   std::string endSaveOnTheWay();
 
   MapSaverSettings settings_;
+  Eigen::Isometry3d T_map_start_ = pf::bodyFromOptical();
   std::optional<pf::RunFolder> folder_;             // of the map that grows now
   std::deque<pf::RunFolder> ended_;                 // of the maps before it, oldest first
   std::unique_ptr<pf::TrajectoryJournal> journal_;  // from the first pose on
