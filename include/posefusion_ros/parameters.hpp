@@ -64,6 +64,34 @@ class Parameters {
   std::ostringstream effective_, changed_;
 };
 
+/// Reads the fields of a list without groups as parameters of the nodelet itself.
+class ParameterFields : public pf::FieldVisitor {
+ public:
+  explicit ParameterFields(Parameters& parameters) : parameters_(parameters) {}
+
+  void enter(const std::string& /*group*/) override {}
+  void leave() override {}
+  void flag(const char* name, bool& value, const char*) override {
+    value = parameters_.flag(name, value);
+  }
+  void number(const char* name, double& value, double min, double max, const char*) override {
+    value = parameters_.number(name, value, {min, max});
+  }
+  void integer(const char* name, int& value, int min, int max, const char*) override {
+    value = parameters_.integer(name, value, {static_cast<double>(min), static_cast<double>(max)});
+  }
+  void text(const char* name, std::string& value, const char*) override {
+    value = parameters_.text(name, value);
+  }
+  void choice(const char* name, std::string& value, const std::vector<std::string>& words,
+              const char*) override {
+    value = parameters_.choice(name, value, words);
+  }
+
+ private:
+  Parameters& parameters_;
+};
+
 /// A parameter tree as YAML, for the loader that files and command lines use too.
 YAML::Node toYaml(XmlRpc::XmlRpcValue value);
 

@@ -10,10 +10,12 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/map_output.hpp"
+#include "posefusion_ros/map_query.hpp"
 #include "posefusion_ros/map_saver.hpp"
 #include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/trigger.hpp"
 #include "posefusion_ros/worker.hpp"
@@ -36,6 +38,9 @@ class FusionNodelet : public ChainNodelet {
                                    &blur_score_, &in_map_mask_, &input_depth_}) {
       topic->shutdown();
     }
+    settings_.reset();
+    map_query_.reset();
+    if (map_output_) worker_->post([this] { map_output_->close(); }).get();
     save_service_.shutdown();
     reset_service_.shutdown();
     worker_.reset();
@@ -63,7 +68,6 @@ class FusionNodelet : public ChainNodelet {
         config.loop, config.tracking,
         lossless ? pf::AnswerTime::after_lag : pf::AnswerTime::when_ready);
     saver_ = std::make_unique<MapSaver>(readMapSaver(parameters));
-    map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
 
     pose_output_ = std::make_unique<PoseOutput>(handle, poses);
@@ -71,6 +75,9 @@ class FusionNodelet : public ChainNodelet {
         std::make_unique<Matcher>(kInternalQueue, [this](const Matcher::Set& set) { onSet(set); });
     worker_ = std::make_unique<Worker<Matcher::Set>>(
         lossless ? 0 : queue, [this](const Matcher::Set& set) { process(set); });
+    map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
+                                              [this] { worker_->post([this] { showMap(); }); });
+    offerSettings({config.tracking, poses.publishing});
     rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
     info_ =
         handle.subscribe(topics::kSharpCameraInfo, kInternalQueue, &FusionNodelet::onInfo, this);
@@ -90,6 +97,28 @@ class FusionNodelet : public ChainNodelet {
     reset_service_ = services.advertiseService("reset", &FusionNodelet::onReset, this);
     whenReady([this] { return color_.getNumPublishers() > 0 && mask_.getNumPublishers() > 0; },
               [this] { advertiseStatus(); });
+  }
+
+  void offerSettings(const FusionSettings& initial) {
+    ros::NodeHandle& services = getMTPrivateNodeHandle();
+    const auto post = [this](std::function<void()> task) { return worker_->post(std::move(task)); };
+    const auto apply = [this](const FusionSettings& settings) {
+      mapper_->set(settings.tracking);
+      pose_output_->set(settings.publishing);
+      map_output_->set(settings.publishing);
+    };
+    settings_ = std::make_unique<SettingsServer<FusionSettings>>(
+        services, initial,
+        [post, apply](const FusionSettings& settings) { post([&] { apply(settings); }).get(); });
+    map_query_ = std::make_unique<MapQuery>(services, post, [this](std::size_t max_points) {
+      return map_output_->cloud(mapper_->map(), last_, pose_output_->mapFromStart(), max_points);
+    });
+  }
+
+  /// To someone who has just begun to listen.
+  void showMap() {
+    map_output_->reset();
+    map_output_->publishSurfels(mapper_->map(), last_, pose_output_->mapFromStart());
   }
 
   void advertiseStatus() {
@@ -159,11 +188,12 @@ class FusionNodelet : public ChainNodelet {
 
   /// Keeps and publishes the pose of a located frame; what goes wrong is added to `reason`.
   void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
+    std::string note;
+    if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
+    if (pose_output_->mapFromStart()) saver_->setFrame(*pose_output_->mapFromStart());
     const pf::StampedPose pose{status.stamp_ns, status.T_map_camera};
     const std::string unwritten = saver_->note(pose, mapper_->map());
     if (!unwritten.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unwritten.c_str());
-    std::string note;
-    if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
     if (!reason.empty() && !note.empty()) reason += "; ";
     reason += note;
   }
@@ -174,9 +204,9 @@ class FusionNodelet : public ChainNodelet {
     std_msgs::Header header;
     header.stamp = stamp;
     header.frame_id = map_frame_;
-    TrackingStatusMsg message =
-        toMessage(status, header,
-                  pose_output_->mapFromStart().value_or(bodyFromOptical()) * status.T_map_camera);
+    TrackingStatusMsg message = toMessage(
+        status, header,
+        pose_output_->mapFromStart().value_or(pf::bodyFromOptical()) * status.T_map_camera);
     message.outcome = outcome;
     message.reason = reason;
     const std::lock_guard<std::mutex> lock(status_mutex_);
@@ -247,6 +277,8 @@ class FusionNodelet : public ChainNodelet {
   ros::Subscriber rejected_, info_, color_, depth_, mask_, flow_, blur_score_, in_map_mask_,
       input_depth_;
   ros::ServiceServer save_service_, reset_service_;
+  std::unique_ptr<SettingsServer<FusionSettings>> settings_;
+  std::unique_ptr<MapQuery> map_query_;
 };
 
 }  // namespace posefusion_ros

@@ -11,6 +11,8 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/running_settings.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -45,6 +47,15 @@ class PoseDetectorNodelet : public ChainNodelet {
           guarded(std::get<2>(set)->header, [&] { detect(set); });
         });
     loaded_ = worker_->post([this] { load(); });
+    settings_ = std::make_unique<SettingsServer<DetectorSettings>>(
+        getMTPrivateNodeHandle(), DetectorSettings{config_},
+        [this](const DetectorSettings& settings) {
+          worker_
+              ->post([&] {
+                if (detector_) detector_->set(settings.pose);
+              })
+              .get();
+        });
     ros::NodeHandle& handle = getNodeHandle();
     info_ = handle.subscribe(topics::kSharpCameraInfo, kInternalQueue, &PoseDetectorNodelet::onInfo,
                              this);
@@ -139,6 +150,7 @@ class PoseDetectorNodelet : public ChainNodelet {
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.
   ros::Subscriber info_, depth_, color_;
+  std::unique_ptr<SettingsServer<DetectorSettings>> settings_;
 };
 
 }  // namespace posefusion_ros
