@@ -32,8 +32,8 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless) {
   settings.odom_frame = plainFrame(parameters.text("odom_frame", ""));
   settings.base_frame = plainFrame(parameters.text("base_frame", ""));
   settings.lookup = readLookup(parameters, lossless);
-  settings.path_period_s =
-      parameters.number("path_period_s", settings.path_period_s, {0.0, 3600.0});
+  ParameterFields fields(parameters);
+  visitFields(settings.publishing, fields);
   return settings;
 }
 
@@ -45,6 +45,7 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
   if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
     lookup_ = std::make_unique<ListeningLookup>(settings.lookup);
   }
+  if (settings.publish_tf) parents_ = std::make_unique<ListeningParentWatch>(handle);
   reset();
 }
 
@@ -82,15 +83,17 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   const bool has_robot = !settings_.base_frame.empty() || !settings_.odom_frame.empty();
   if (!T_map_start_) {
     const Eigen::Isometry3d T_map_camera =
-        has_robot ? links.T_odom_base * links.T_base_camera : bodyFromOptical();
+        has_robot ? links.T_odom_base * links.T_base_camera : pf::bodyFromOptical();
     T_map_start_ = T_map_camera * status.T_map_camera.inverse();
   }
   const Eigen::Isometry3d T_map_camera = *T_map_start_ * status.T_map_camera;
   const Eigen::Isometry3d T_map_base = T_map_camera * links.T_base_camera.inverse();
   if (settings_.publish_tf) {
     const bool has_odometry = !settings_.odom_frame.empty();
-    sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
-                  has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+    const std::string unsent =
+        sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
+                      has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+    if (!unsent.empty()) note = unsent;
   }
   sendOdometry(image.stamp, links, T_map_base, status.tracking.covariance);
   geometry_msgs::PoseStamped pose;
@@ -102,13 +105,22 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   return true;
 }
 
-void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
-                               const Eigen::Isometry3d& T) {
+std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
+                                      const Eigen::Isometry3d& T) {
+  // Who came first goes on sending: two that hear each other would both fall silent.
+  const std::string conflict = sends_ ? "" : parents_->conflict(child, settings_.map_frame);
+  sends_ = conflict.empty();
+  if (!sends_) {
+    return "no transform is sent: " + conflict +
+           "; give base_frame (the frame above it that has no parent), another camera frame, or "
+           "publish_tf:=false";
+  }
   geometry_msgs::TransformStamped message = tf2::eigenToTransform(T);
   message.header.stamp = stamp;
   message.header.frame_id = settings_.map_frame;
   message.child_frame_id = child;
   broadcaster_.sendTransform(message);
+  return {};
 }
 
 void PoseOutput::sendOdometry(const ros::Time& stamp, const Links& links,
@@ -138,7 +150,8 @@ void PoseOutput::extendPath(const geometry_msgs::PoseStamped& pose) {
   if (path_.poses.empty() || stamp - path_.poses.back().header.stamp >= kPathStep) {
     path_.poses.push_back(pose);
   }
-  if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.path_period_s) return;
+  if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.publishing.path_period_s)
+    return;
   path_.header.stamp = stamp;
   path_sent_ = stamp;
   if (path_publisher_.getNumSubscribers() > 0) path_publisher_.publish(path_);
