@@ -30,6 +30,9 @@ pf::SparseFlow fromMessage(const SparseFlowMsg& message);
 TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera);
 
+/// Outcome, state, pose (in the map frame of the message) and times; the rest is not in a message.
+pf::FrameStatus fromMessage(const TrackingStatusMsg& message);
+
 /// "fused", "blurred", "dropped": an outcome of TrackingStatusMsg as one word.
 std::string outcomeName(std::uint8_t outcome);
 

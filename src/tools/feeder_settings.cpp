@@ -24,6 +24,8 @@ FeederSettings readFeederSettings() {
   s.manager = parameters.text("manager", "");
   s.ends = parameters.text("ends", "");
   s.stays = parameters.text("stays", "");
+  s.output = parameters.text("output", "");
+  s.config = parameters.config({});
   for (const std::string& name : parameters.unknown()) {
     ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
   }
