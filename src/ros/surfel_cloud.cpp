@@ -70,7 +70,7 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                             s.confidence[i]};
     std::memcpy(&cloud->data[count++ * sizeof(SurfelPoint)], &point, sizeof(SurfelPoint));
   });
-  cloud->data.resize(count * sizeof(Point));  // without those of other fragments
+  cloud->data.resize(count * sizeof(SurfelPoint));  // without those of other fragments
   cloud->width = static_cast<std::uint32_t>(count);
   cloud->row_step = cloud->width * cloud->point_step;
   return cloud;

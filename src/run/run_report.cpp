@@ -147,13 +147,13 @@ void RunReport::write(const std::string& folder, const SurfelMap& map) const {
                    "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
                    "up), as told when the frame came: loops found later do not correct it");
   }
-  saveMap(folder + "/map.ply", map, T_file_map);
-  writeSummary(folder, map);
+  writeSummary(folder, map, saveMap(folder + "/map.ply", map, T_file_map));
 }
 
-void RunReport::writeSummary(const std::string& folder, const SurfelMap& map) const {
+void RunReport::writeSummary(const std::string& folder, const SurfelMap& map,
+                             std::size_t surfels) const {
   AtomicFile file(folder + "/summary.json");
-  file.stream() << summary(map.stableCount());
+  file.stream() << summary(surfels);
   file.commit();
   const cv::Mat picture = drawMap(map, trajectory_, camera_);
   if (!picture.empty()) savePng(folder + "/map.png", picture);

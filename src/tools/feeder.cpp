@@ -242,8 +242,7 @@ int feed(const std::string& input) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "posefusion_feeder");
   if (argc != 2) {
-    std::cerr << "usage: posefusion_feeder BAG_OR_TUM_FOLDER [_lossless:=true] [_window:=2] "
-                 "[_rate:=1.0]\n";
+    std::cerr << "usage: posefusion_feeder BAG_OR_TUM_FOLDER [_lossless:=true] [_rate:=1.0]\n";
     return 2;
   }
   const ros::NodeHandle alive;  // ROS, and with it the log, ends with the last handle

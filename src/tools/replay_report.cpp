@@ -116,7 +116,8 @@ std::string ReplayReport::write() {
     throw pf::InputError("no summary is written: fusion has saved nothing in " + output_);
   }
   report_.setCorrected(pf::loadTrajectory(folder + "/trajectory.txt"));
-  report_.writeSummary(folder, mapOf(folder + "/map.ply"));
+  const pf::SurfelMap map = mapOf(folder + "/map.ply");
+  report_.writeSummary(folder, map, map.size());
   return "\n" + report_.table() + "results  " + folder;
 }
 

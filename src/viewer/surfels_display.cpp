@@ -20,6 +20,9 @@ namespace {
 
 constexpr float kHalfView_rad = 0.39F;  // of rviz's orbit view, upwards and downwards
 constexpr float kMargin = 1.05F;
+// Below so many frames a second, seen twice, every second disc is left out: software rendering.
+constexpr float kFluid_hz = 8, kLook_s = 2;
+constexpr std::size_t kFewestDiscs = 50000;
 constexpr std::size_t kSample = 50000;  // surfels that room and floor are told from
 
 /// Evenly many are left out; the others grow, so that no holes open.
@@ -48,12 +51,14 @@ SurfelsDisplay::SurfelsDisplay() {
   floor_grid_ = new rviz::BoolProperty("Floor Grid", true, "A grid of metres on the floor.", this);
   fit_view_ = new rviz::BoolProperty(
       "Fit View", true, "Keep the whole room in the orbit view, until it is moved by hand.", this);
+  keep_fluid_ = new rviz::BoolProperty("Keep Fluid", true,
+                                       "Fewer and larger discs where drawing is slow.", this);
   max_discs_ = new rviz::IntProperty(
       "Max Discs", 1000000, "More surfels than that: evenly many are left out, the others grow.",
       this);
   max_discs_->setMin(1);
-  for (rviz::Property* property :
-       std::initializer_list<rviz::Property*>{hide_backs_, floor_grid_, fit_view_, max_discs_}) {
+  for (rviz::Property* property : std::initializer_list<rviz::Property*>{
+           hide_backs_, floor_grid_, fit_view_, keep_fluid_, max_discs_}) {
     connect(property, &rviz::Property::changed, this, again);
   }
 }
@@ -74,6 +79,7 @@ void SurfelsDisplay::onInitialize() {
 void SurfelsDisplay::reset() {
   MFDClass::reset();
   cloud_.reset();
+  fluid_discs_ = SIZE_MAX;
   if (discs_) discs_->set({});
   if (grid_) grid_->getSceneNode()->setVisible(false);
 }
@@ -97,10 +103,29 @@ void SurfelsDisplay::processMessage(const sensor_msgs::PointCloud2::ConstPtr& cl
   show();
 }
 
+void SurfelsDisplay::update(float wall_dt, float ros_dt) {
+  MFDClass::update(wall_dt, ros_dt);
+  ++frames_;
+  frames_s_ += wall_dt;
+  if (frames_s_ < kLook_s) return;
+  const bool is_slow = static_cast<float>(frames_) < kFluid_hz * frames_s_;
+  frames_ = 0;
+  frames_s_ = 0;
+  slow_looks_ = is_slow && cloud_ ? slow_looks_ + 1 : 0;
+  if (slow_looks_ < 2 || !keep_fluid_->getBool()) return;
+  slow_looks_ = 0;
+  const std::size_t shown = std::min(
+      {fluid_discs_, std::size_t{cloud_->width}, static_cast<std::size_t>(max_discs_->getInt())});
+  if (shown <= kFewestDiscs) return;
+  fluid_discs_ = std::max(kFewestDiscs, shown / 2);
+  show();
+}
+
 void SurfelsDisplay::show() {
   if (!cloud_ || !discs_) return;
   discs_->hideBacks(hide_backs_->getBool());
-  discs_->set(thinned(*cloud_, static_cast<std::size_t>(max_discs_->getInt())));
+  const auto most = static_cast<std::size_t>(max_discs_->getInt());
+  discs_->set(thinned(*cloud_, keep_fluid_->getBool() ? std::min(most, fluid_discs_) : most));
   setStatus(rviz::StatusProperty::Ok, "Message", QString::number(cloud_->width) + " surfels");
   const auto sample = thinned(*cloud_, kSample);
   const Eigen::AlignedBox3f box = boundsOf(sample);

@@ -4,6 +4,7 @@
 #include <rviz/message_filter_display.h>
 #include <sensor_msgs/PointCloud2.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,6 +31,7 @@ class SurfelsDisplay : public rviz::MessageFilterDisplay<sensor_msgs::PointCloud
   void onInitialize() override;
   void reset() override;
   void processMessage(const sensor_msgs::PointCloud2::ConstPtr& cloud) override;
+  void update(float wall_dt, float ros_dt) override;
 
  private:
   void show();
@@ -39,10 +41,16 @@ class SurfelsDisplay : public rviz::MessageFilterDisplay<sensor_msgs::PointCloud
   rviz::BoolProperty* hide_backs_;
   rviz::BoolProperty* floor_grid_;
   rviz::BoolProperty* fit_view_;
+  rviz::BoolProperty* keep_fluid_;
   rviz::IntProperty* max_discs_;
   std::unique_ptr<SurfelDiscs> discs_;
   std::unique_ptr<rviz::Grid> grid_;
   sensor_msgs::PointCloud2::ConstPtr cloud_;
+  /// Frames drawn since the last look at the speed, and the seconds they took.
+  int frames_ = 0;
+  float frames_s_ = 0;
+  int slow_looks_ = 0;
+  std::size_t fluid_discs_ = SIZE_MAX;  ///< as many as can be drawn fluidly, as far as is known
   /// Of the view, as it was fitted last: another one is the user's.
   struct Fitted {
     float distance = 0;

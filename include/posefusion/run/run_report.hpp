@@ -59,8 +59,9 @@ class RunReport {
   /// people.png. Throws InputError naming the file.
   void write(const std::string& folder, const SurfelMap& map) const;
 
-  /// Of these, summary.json and the pictures. `map` lies in the frame of the trajectory.
-  void writeSummary(const std::string& folder, const SurfelMap& map) const;
+  /// Of these, summary.json and the pictures. `map` lies in the frame of the trajectory; `surfels`
+  /// are in map.ply.
+  void writeSummary(const std::string& folder, const SurfelMap& map, std::size_t surfels) const;
 
   /// A few lines for people.
   std::string table() const;
