@@ -85,13 +85,13 @@ void RunReport::add(const ProcessedFrame& frame) {
 
 void RunReport::setBackEnd(const BackEnd& back_end, const LoopCounts& loops) {
   live_ = std::exchange(trajectory_, back_end.trajectory());
-  knows_back_end_ = true;
   loops_ = loops;
   corrections_ = back_end.counts();
 }
 
 void RunReport::setCorrected(const Trajectory& trajectory) {
   live_ = std::exchange(trajectory_, trajectory);
+  ran_elsewhere_ = true;
 }
 
 double RunReport::framesPerSecond() const {
@@ -117,9 +117,9 @@ std::string RunReport::summary(std::size_t surfels) const {
   out["frames"] = framesJson(statistics_.frames());
   out["masks"] = {{"frames", masks.with_mask}, {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
-  if (knows_back_end_) out["loops"] = loopsJson(loops_, corrections_);
+  if (!ran_elsewhere_) out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();
-  if (knows_back_end_) out["peak_memory_mb"] = peakMemoryMb();
+  if (!ran_elsewhere_) out["peak_memory_mb"] = peakMemoryMb();
   if (const auto e = errors()) {
     out["ate_rmse_m"] = e->ate_m.rmse;
     out["ate_held_rmse_m"] = e->held_m.rmse;

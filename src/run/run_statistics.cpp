@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pf {
 namespace {
@@ -70,9 +71,8 @@ void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("tracking_and_fusion", frame.status.tracking_ms + frame.status.fusion_ms);
 }
 
-/// Nothing takes no time at all: that of some stages is not known of a replay.
 void RunStatistics::addTime(const char* stage, double ms) {
-  if (ms > 0) times_ms_[stage].push_back(ms);
+  if (!std::isnan(ms)) times_ms_[stage].push_back(ms);
 }
 
 MaskCounts RunStatistics::masks() const {

@@ -2,6 +2,7 @@
 #include "replay_report.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
@@ -55,7 +56,11 @@ std::string ReplayReport::latest() const {
 
 void ReplayReport::sent(const pf::RgbdFrame& frame) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  under_way_[frame.stamp_ns].whole.seen.frame = frame;
+  pf::ProcessedFrame& whole = under_way_[frame.stamp_ns].whole;
+  whole.seen.frame = frame;
+  // No message tells them.
+  whole.seen.gate_ms = whole.seen.pose_ms = whole.segmentation_ms =
+      std::numeric_limits<double>::quiet_NaN();
   if (under_way_.size() > kMostUnderWay) take(true);
 }
 

@@ -43,7 +43,7 @@ class RunReport {
   /// The corrected trajectory, and what was done to loops, once all frames were added.
   void setBackEnd(const BackEnd& back_end, const LoopCounts& loops);
 
-  /// The corrected trajectory alone, where another process has the back end.
+  /// In place of setBackEnd(), where the chain ran in another process.
   void setCorrected(const Trajectory& trajectory);
 
   const RunStatistics& statistics() const { return statistics_; }
@@ -77,7 +77,7 @@ class RunReport {
   Trajectory truth_;
   LoopCounts loops_;
   BackEnd::Counts corrections_;
-  bool knows_back_end_ = false;
+  bool ran_elsewhere_ = false;  ///< loops and memory are not known
   PeopleStrip strip_;
   PinholeCamera camera_;
   std::optional<double> depth_difference_m_;

@@ -40,6 +40,7 @@ struct StageTime {
 /// Counts and times of a run, frame by frame.
 class RunStatistics {
  public:
+  /// Times that are NaN are not known.
   void add(const ProcessedFrame& frame);
 
   /// A frame that no stage looked at; `outcome` says why, as one word.
