@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "posefusion/core/trajectory.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "temporary_folder.hpp"
