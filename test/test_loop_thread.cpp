@@ -5,7 +5,11 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "posefusion/core/se3.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -104,6 +108,84 @@ TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
   loops.serve(mapper);
   loops.finish(mapper);
   EXPECT_EQ(loops.counts().keyframes, 1U) << "a map of its own";
+}
+
+/// Answers as the test says.
+class FakeResponder : public LoopResponder {
+ public:
+  void ask(LoopQuestion question) override { questions.push_back(std::move(question)); }
+  bool isReady() override { return is_ready; }
+  std::optional<LoopAnswer> take() override {
+    if (throws) throw std::runtime_error("broken");
+    return std::nullopt;
+  }
+  void forget() override { questions.clear(); }
+  bool isReplaced() override { return std::exchange(is_replaced, false); }
+
+  std::vector<LoopQuestion> questions;
+  bool is_ready = false, throws = false, is_replaced = false;
+};
+
+class LoopExchanges : public testing::Test {
+ protected:
+  explicit LoopExchanges(AnswerTime time = AnswerTime::when_ready) {
+    config.frame.shrink = 1;
+    config.graph.keyframe_distance_m = 0.05;
+    auto owned = std::make_unique<FakeResponder>();
+    closer = owned.get();
+    mapper = std::make_unique<Mapper>(config);
+    exchange =
+        std::make_unique<LoopExchange>(config.loop.answer_lag_frames, time, std::move(owned));
+  }
+  void see(int index, bool covered = false) {
+    StaticFrame input;
+    input.frame = room().frame(index).frame;
+    input.frame.stamp_ns = stamp_ns += 33333333;
+    if (covered) input.frame.depth.setTo(0);
+    mapper->process(input);
+    exchange->serve(*mapper);
+  }
+
+  Config config;
+  FakeResponder* closer = nullptr;
+  std::unique_ptr<Mapper> mapper;
+  std::unique_ptr<LoopExchange> exchange;
+  std::int64_t stamp_ns = 0;
+};
+
+TEST_F(LoopExchanges, ALostCameraAsksAgainWhenAQuestionWasGivenUp) {
+  for (int i = 0; i < 3; ++i) see(i);
+  for (int i = 0; i < kCovered; ++i) see(3, true);
+  const auto places = [&] {
+    return std::count_if(closer->questions.begin(), closer->questions.end(),
+                         [](const LoopQuestion& question) { return question.place != nullptr; });
+  };
+  for (int i = 0; i < 3; ++i) see(farthestFrame());
+  ASSERT_EQ(places(), 1) << "no second question before the answer to the first";
+  closer->is_ready = true;  // given up
+  see(farthestFrame());
+  closer->is_ready = false;
+  EXPECT_EQ(exchange->unanswered(), closer->questions.size());
+  see(farthestFrame());
+  EXPECT_EQ(places(), 2);
+  closer->throws = closer->is_ready = true;
+  EXPECT_THROW(see(farthestFrame()), std::runtime_error);
+  closer->throws = closer->is_ready = false;
+  see(farthestFrame());
+  EXPECT_EQ(places(), 3) << "it goes on after what was thrown";
+}
+
+TEST_F(LoopExchanges, WhoBeginsToAnswerIsToldOfAllKeyframes) {
+  int next = 0;
+  for (; next < kMapped && closer->questions.size() < 3; ++next) see(next);
+  ASSERT_EQ(closer->questions.size(), 3U) << "the test needs keyframes";
+  for (const LoopQuestion& question : closer->questions) EXPECT_FALSE(question.known);
+  closer->is_replaced = true;
+  for (; next < kMapped && closer->questions.size() < 4; ++next) see(next);
+  ASSERT_EQ(closer->questions.size(), 4U);
+  ASSERT_TRUE(closer->questions.back().known);
+  EXPECT_EQ(closer->questions.back().known->size(), 3U);
+  EXPECT_EQ(closer->questions.back().corrected.size(), 3U);
 }
 
 }  // namespace

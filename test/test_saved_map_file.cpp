@@ -209,6 +209,22 @@ TEST_F(SavedMapFile, AFullDiskIsMadeUpForByTheNextWrite) {
   EXPECT_EQ(saved.frames.size(), static_cast<std::size_t>(kMapped));
 }
 
+TEST_F(SavedMapFile, ARecordingGoesOnAfterItWasFinished) {
+  Session session;
+  const std::string path = own / "map.pfdb";
+  {
+    MapRecording recording(path, MapWriter::Mode::create, "", session.mapper);
+    for (const int end : {5, 10}) {
+      session.follow(end - 5, end);
+      recording.update(room().frame(0).frame.camera, session.mapper);
+      EXPECT_TRUE(recording.finish(session.mapper));
+    }
+  }
+  const SavedMap saved = readSavedMap(path);
+  EXPECT_EQ(saved.frames.size(), 10U);
+  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().collect()));
+}
+
 TEST_F(SavedMapFile, WhatCannotBeUsedIsRefusedByItsName) {
   const std::string path = own / "x.pfdb";
   own.write("x.pfdb", "no map");

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <posefusion/BlurScore.h>
+#include <posefusion/Keyframe.h>
 #include <posefusion/Keypoint.h>
+#include <posefusion/LoopConstraint.h>
 #include <posefusion/ModelView.h>
 #include <posefusion/People.h>
 #include <posefusion/Person.h>
@@ -13,7 +15,9 @@ namespace posefusion_ros {
 
 // The messages of the package (namespace posefusion) beside the core's values (namespace pf).
 using BlurScoreMsg = posefusion::BlurScore;
+using KeyframeMsg = posefusion::Keyframe;
 using KeypointMsg = posefusion::Keypoint;
+using LoopConstraintMsg = posefusion::LoopConstraint;
 using ModelViewMsg = posefusion::ModelView;
 using PeopleMsg = posefusion::People;
 using PersonMsg = posefusion::Person;

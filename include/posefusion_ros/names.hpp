@@ -32,6 +32,9 @@ constexpr char kOdometry[] = "odometry";
 constexpr char kPose[] = "pose";
 constexpr char kPath[] = "path";
 constexpr char kSurfels[] = "surfels";
+// Fusion asks the loop closer, and its answer.
+constexpr char kKeyframe[] = "keyframe";
+constexpr char kLoopConstraint[] = "loop_constraint";
 // Frames that a stage gives up, on their way to fusion, which reports them on `status`.
 constexpr char kRejected[] = "rejected";
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/parameters.hpp"
@@ -34,7 +35,8 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless);
 ///
 /// The core's map begins at the first camera pose. The map frame begins at the base (odometry where
 /// there is one) as TF has it at that time; without a base frame the first camera counts as level.
-/// Not thread safe.
+/// A loaded map begins at the base too, whose camera is taken to be mounted as it was then. Not
+/// thread safe.
 class PoseOutput {
  public:
   PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings);
@@ -48,7 +50,11 @@ class PoseOutput {
   /// The core's map in the map frame; nothing until the first pose could be published.
   const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
 
-  void reset();
+  /// Loops have moved the poses told so far: the path follows. `corrected`: of the camera.
+  void correct(const pf::Trajectory& corrected);
+
+  /// Another map. `is_loaded`: it began in a session before.
+  void reset(bool is_loaded = false);
 
   void set(const PublishingConfig& publishing) { settings_.publishing = publishing; }
 
@@ -60,7 +66,7 @@ class PoseOutput {
                             const Eigen::Isometry3d& T);
   void sendOdometry(const ros::Time& stamp, const Links& links, const Eigen::Isometry3d& T_map_base,
                     const pf::Matrix6d& covariance);
-  void extendPath(const geometry_msgs::PoseStamped& pose);
+  void extendPath(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& T_base_camera);
 
   PoseOutputSettings settings_;
   ros::Publisher odometry_, pose_, path_publisher_;
@@ -69,9 +75,11 @@ class PoseOutput {
   bool sends_ = false;                             // the last transform was sent
   tf2_ros::TransformBroadcaster broadcaster_;
   std::optional<Eigen::Isometry3d> T_map_start_;
+  bool is_loaded_ = false;
   std::optional<Eigen::Isometry3d> T_map_base_before_;
   ros::Time before_, path_sent_;
   nav_msgs::Path path_;
+  std::vector<Eigen::Isometry3d> path_mounts_;  // T_base_camera of each pose of the path
 };
 
 }  // namespace posefusion_ros

@@ -33,8 +33,12 @@ class StageWatch {
   /// OK. Holds until it is told anew.
   void tell(int level, const std::string& text);
 
+  /// From now on it is no warning that nothing comes.
+  void allowSilence();
+
   /// Level, message and values; rates and shares are those since the last report. WARN where no
-  /// frame came for 5 s, and where more than a tenth was given up for another reason than blur.
+  /// frame came for 5 s, and where more than a tenth was given up for another reason than blur
+  /// and pauses.
   void report(Time now, diagnostic_updater::DiagnosticStatusWrapper& out);
 
  private:
@@ -52,6 +56,7 @@ class StageWatch {
   std::map<std::string, std::string> values_;
   int level_ = 0;
   std::string told_;
+  bool may_be_silent_ = false;
 };
 
 }  // namespace posefusion_ros

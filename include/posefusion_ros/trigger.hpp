@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <std_srvs/Trigger.h>
-
 #include <exception>
 #include <functional>
 #include <future>
@@ -10,11 +8,12 @@
 
 namespace posefusion_ros {
 
-/// Runs `task` through `post` (a Worker's), waits for it, and answers a Trigger service with the
-/// sentence it returns or the error it throws. To be called from a queue that no work waits for.
-inline void answerTrigger(const std::function<std::future<void>(std::function<void()>)>& post,
-                          const std::function<std::string()>& task,
-                          std_srvs::Trigger::Response& response) {
+/// Runs `task` through `post` (a Worker's), waits for it, and answers a service of `success` and
+/// `message` (std_srvs/Trigger) with the sentence it returns or the error it throws. To be called
+/// from a queue that no work waits for.
+template <typename Response>
+void answerTrigger(const std::function<std::future<void>(std::function<void()>)>& post,
+                   const std::function<std::string()>& task, Response& response) {
   try {
     std::string message;
     std::exception_ptr failure;

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
@@ -75,6 +76,13 @@ SavedMap savedMap(const MapReader& reader) {
   return map;
 }
 
+std::string textOf(const PinholeCamera& c) {
+  std::ostringstream out;
+  out << c.width << " x " << c.height << ", fx " << c.fx << " fy " << c.fy << " cx " << c.cx
+      << " cy " << c.cy;
+  return out.str();
+}
+
 }  // namespace
 
 SavedMap readSavedMap(const std::string& path) {
@@ -84,6 +92,22 @@ SavedMap readSavedMap(const std::string& path) {
     const std::string text = error.what(), name = path + ": ";
     throw InputError(text.rfind(name, 0) == 0 ? text : name + text);
   }
+}
+
+std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
+                         const PinholeCamera& of_frames, const std::string& whose) {
+  if (of_map == of_frames) return {};
+  return file + ": is a map of another camera (" + textOf(of_map) + ") than " + whose + " (" +
+         textOf(of_frames) + ")";
+}
+
+std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,
+                         const std::string& whose) {
+  while (const auto next = frames.next()) {
+    if (!next->defect.empty() || !defectOf(next->frame).empty()) continue;
+    return cameraDefect(file, of_map, Rectifier().rectify(next->frame).camera, whose);
+  }
+  return {};
 }
 
 MapRecording::MapRecording(const std::string& path, MapWriter::Mode mode, std::string settings,
@@ -104,8 +128,7 @@ std::string MapRecording::update(const PinholeCamera& camera, const Mapper& mapp
   camera_ = camera;
   begun_ = now;
   auto changed = std::make_shared<const MapUpdate>(changes(mapper));
-  writing_ = {mapper.map().frame(), mapper.backEnd().frames().size(),
-              static_cast<int>(mapper.backEnd().graph().keyframes().size())};
+  writing_ = amountOf(mapper);
   work_ = std::async(std::launch::async, [this, changed] { writer_.write(*changed); });
   return error;
 }
@@ -114,7 +137,13 @@ bool MapRecording::finish(const Mapper& mapper) {
   takeResult();
   if (mapper.map().frame() < 0 || camera_.width == 0) return false;
   writer_.write(changes(mapper));
+  written_ = amountOf(mapper);
   return true;
+}
+
+MapRecording::Written MapRecording::amountOf(const Mapper& mapper) {
+  return {mapper.map().frame(), mapper.backEnd().frames().size(),
+          static_cast<int>(mapper.backEnd().graph().keyframes().size())};
 }
 
 /// All that the file does not have yet.

@@ -13,6 +13,7 @@ namespace {
 constexpr double kNearTurn_rad = 0.8;
 constexpr double kMostUnlike = 0.5;  // dissimilarity of ferns that is looked at
 constexpr std::size_t kFernMatches = 2;
+constexpr std::size_t kPlacesLike = 12;  // keyframes that a lost camera's picture is matched with
 // The two directions of a pair must tell the same.
 constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
@@ -22,6 +23,12 @@ FernConfig fernConfig(const LoopConfig& config) {
   ferns.seed = static_cast<std::uint32_t>(config.fern_seed);
   ferns.novelty = config.fern_novelty;
   return ferns;
+}
+
+Features featuresOf(const KeyframeView& view) {
+  FeatureImage image{view.intensity, cv::Mat(), view.camera};
+  view.depth_mm.convertTo(image.depth_m, CV_32F, 1e-3);
+  return findFeatures(image);
 }
 
 }  // namespace
@@ -34,15 +41,12 @@ void LoopCloser::addKeyframe(const KeyframeView& view) {
     throw InputError("keyframe " + std::to_string(view.id) + ": expected an id above " +
                      std::to_string(keyframes_.back().view.id));
   }
-  FeatureImage image{view.intensity, cv::Mat(), view.camera};
-  view.depth_mm.convertTo(image.depth_m, CV_32F, 1e-3);
-  keyframes_.push_back({view, findFeatures(image)});
+  keyframes_.push_back({view, featuresOf(view), ferns_.encode(view.thumbnail)});
   ++counts_.keyframes;
-  code_ = ferns_.encode(view.thumbnail);
   if (config_.static_view_rule && !view.nobody_in_view) {
     ++counts_.not_static;
   } else {
-    ferns_.harvest(view.id, code_);
+    ferns_.harvest(view.id, keyframes_.back().code);
   }
   counts_.ferns = ferns_.size();
 }
@@ -64,7 +68,7 @@ std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
   const std::size_t old = keyframes_.size() - gap;
   const Keyframe& last = keyframes_.back();
   std::vector<Guess> found;
-  for (const FernMatch& match : ferns_.nearest(code_, ferns_.size())) {
+  for (const FernMatch& match : ferns_.nearest(last.code, ferns_.size())) {
     if (match.dissimilarity > kMostUnlike || found.size() == kFernMatches) break;
     for (std::size_t i = 0; i < old; ++i) {
       if (keyframes_[i].view.id == match.id) found.push_back({i, Eigen::Isometry3d::Identity()});
@@ -87,6 +91,24 @@ std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
     if (angleOf(step) < kNearTurn_rad) found.push_back({i, step});
   }
   return found;
+}
+
+std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) const {
+  std::vector<Eigen::Isometry3d> places;
+  if (keyframes_.empty()) return places;
+  const FernCode code = ferns_.encode(view.thumbnail);
+  std::vector<std::pair<double, std::size_t>> alike;
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+    alike.emplace_back(FernDatabase::dissimilarity(code, keyframes_[i].code), i);
+  }
+  std::sort(alike.begin(), alike.end());
+  alike.resize(std::min(alike.size(), kPlacesLike));
+  const Features features = featuresOf(view);
+  for (const auto& [dissimilarity, i] : alike) {
+    const FeatureMatch match = matchFeatures(keyframes_[i].features, features);
+    if (match.found) places.push_back(keyframes_[i].view.T_map_camera * match.T_first_second);
+  }
+  return places;
 }
 
 bool LoopCloser::verify(const Guess& guess, const WorkingFrame& to, LoopConstraint& constraint) {

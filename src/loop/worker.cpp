@@ -41,6 +41,14 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
 }
 
 std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
+  // Features tell soonest, where they tell; drawing the map finds the rest.
+  std::vector<PlaceCandidate> like;
+  const Eigen::Isometry3d nowhere = Eigen::Isometry3d::Identity();
+  for (const auto& T : closer_.placesLike(keyframeView(question.frame, 0, nowhere, true))) {
+    like.emplace_back().T_map_camera = T;
+  }
+  const PlaceVerdict soon = verifier_.verifyBest(*question.map, question.frame, like, kVerified);
+  if (!like.empty() && soon.accepted()) return soon;
   if (map_.lock() != question.map) {
     map_ = question.map;
     points_ = thinnedPoints(*question.map);

@@ -13,15 +13,24 @@ namespace {
 constexpr char kPose[] =
     "pose of the camera (optical frame: z forward, x right, y down) in the map";
 constexpr char kDefaultOutput[] = "posefusion_output";
-constexpr char kMap[] = "map.ply";
+constexpr char kMap[] = "map.ply", kDatabase[] = "map.pfdb";
 constexpr char kTrajectory[] = "trajectory.txt";
-constexpr char kPartial[] = "trajectory.partial.txt";
+constexpr char kPartial[] = "trajectory.partial.txt", kPartialDatabase[] = "map.partial.pfdb";
+constexpr char kNewDatabase[] = "map.pfdb.part";
+
+namespace fs = std::filesystem;
 
 /// Removes what save() wrote, and the folder where nothing else is in it.
 void forget(const pf::RunFolder& old) {
   std::error_code ignored;
-  for (const char* name : {kMap, kTrajectory}) std::filesystem::remove(old.file(name), ignored);
+  for (const char* name : {kMap, kDatabase, kTrajectory}) fs::remove(old.file(name), ignored);
   old.removeIfEmpty();
+}
+
+void rename(const std::string& from, const std::string& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) throw pf::InputError(to + ": cannot be written: " + error.message());
 }
 
 }  // namespace
@@ -48,35 +57,84 @@ const pf::RunFolder& MapSaver::folder() {
   return *folder_;
 }
 
-std::string MapSaver::save(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
+std::string MapSaver::resolve(const std::string& path) const {
+  return fs::absolute(fs::path(isOn() ? settings_.output : kDefaultOutput) / path)
+      .lexically_normal()
+      .string();
+}
+
+void MapSaver::continueIn(const std::string& file, const MapToSave& map) {
+  recording_.emplace(file, pf::MapWriter::Mode::extend, settings_.settings, map.mapper);
+  continued_ = file;
+}
+
+std::string MapSaver::save(const MapToSave& map) {
+  const pf::Trajectory trajectory = map.trajectory();
   if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
   endSaveOnTheWay();
   const pf::RunFolder& target = folder();
   pf::saveTrajectory(target.file(kTrajectory), pf::inWorld(T_map_start_, trajectory), kPose);
-  const std::size_t surfels = pf::saveMap(target.file(kMap), map, T_map_start_);
+  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map(), T_map_start_);
+  const std::string continued = saveContinued(map);
+  if (continued.empty() && (recording_ || !isOn())) saveDatabase(map);
   target.makeLatest();
   saved_ = Clock::now();
   return "saved map.ply (" + std::to_string(surfels) + " surfels) and trajectory.txt (" +
-         std::to_string(trajectory.size()) + " poses) in " + target.path();
+         std::to_string(trajectory.size()) + " poses) in " + target.path() +
+         (continued.empty() ? "" : "; " + continued);
 }
 
-std::string MapSaver::finish(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
+/// Brings the file up to date that is gone on in; tells so.
+std::string MapSaver::saveContinued(const MapToSave& map) {
+  if (continued_.empty()) return {};
+  recording_->update(map.camera, map.mapper);
+  recording_->finish(map.mapper);
+  return "the map goes on in " + continued_;
+}
+
+/// The map as it is, beside the one that is being recorded.
+void MapSaver::saveDatabase(const MapToSave& map) {
+  const std::string fresh = folder().file(kNewDatabase);
+  std::error_code ignored;
+  fs::remove(fresh, ignored);
+  {
+    pf::MapRecording whole(fresh, pf::MapWriter::Mode::create, settings_.settings, map.mapper);
+    whole.update(map.camera, map.mapper);
+    whole.finish(map.mapper);
+  }
+  rename(fresh, folder().file(kDatabase));
+}
+
+/// What is partial is not needed any more.
+void MapSaver::endRecording() {
+  if (journal_) journal_->remove();
+  journal_.reset();
+  const bool was_recorded = recording_ && continued_.empty();
+  recording_.reset();
+  if (!was_recorded) return;
+  std::error_code ignored;
+  fs::remove(folder().file(kPartialDatabase), ignored);
+}
+
+std::string MapSaver::finish(const MapToSave& map) {
   try {
-    const std::string said = save(map, trajectory);
-    if (journal_) journal_->remove();
-    journal_.reset();
+    const std::string said = isOn() ? save(map) : saveContinued(map);
+    endRecording();
     return said;
   } catch (const std::exception& error) {
     return error.what();
   }
 }
 
-std::string MapSaver::beginAnew(const pf::SurfelMap& map, const pf::Trajectory& trajectory) {
-  if (trajectory.empty()) return {};
-  std::string said;
+std::string MapSaver::beginAnew(const MapToSave& map) {
+  if (map.trajectory().empty()) {
+    recording_.reset();
+    continued_.clear();
+    return {};
+  }
+  std::string said = isOn() ? save(map) : saveContinued(map);
   if (isOn()) {
-    said = save(map, trajectory);
-    if (journal_) journal_->remove();
+    endRecording();
     ended_.push_back(*folder_);
     if (settings_.maps_kept > 0 && ended_.size() > static_cast<std::size_t>(settings_.maps_kept)) {
       forget(ended_.front());
@@ -91,12 +149,17 @@ void MapSaver::abandon() {
   T_map_start_ = pf::bodyFromOptical();
   endSaveOnTheWay();
   journal_.reset();
+  recording_.reset();
+  continued_.clear();
   folder_.reset();
 }
 
-std::string MapSaver::note(const pf::StampedPose& pose, const pf::SurfelMap& map) {
-  if (!isOn()) return {};
+std::string MapSaver::note(const pf::StampedPose& pose, const MapToSave& map, bool changed) {
+  if (!isOn() && continued_.empty()) return {};
+  std::string trouble;
   try {
+    trouble = record(map, changed);
+    if (!isOn()) return trouble;
     if (!journal_) {
       journal_ = std::make_unique<pf::TrajectoryJournal>(folder().file(kPartial), kPose);
     }
@@ -108,10 +171,19 @@ std::string MapSaver::note(const pf::StampedPose& pose, const pf::SurfelMap& map
   const auto period = std::chrono::duration<double>(settings_.period_s);
   if (settings_.period_s > 0 && Clock::now() - saved_ >= period) {
     const std::string failed = endSaveOnTheWay();
-    saveOnTheWay(map);
+    saveOnTheWay(map.mapper.map());
     if (!failed.empty()) return failed;
   }
-  return folder().lowSpace();
+  return trouble.empty() ? folder().lowSpace() : trouble;
+}
+
+/// The map file grows from the first frame that was fused on.
+std::string MapSaver::record(const MapToSave& map, bool changed) {
+  if (!recording_ && changed) {
+    recording_.emplace(folder().file(kPartialDatabase), pf::MapWriter::Mode::create,
+                       settings_.settings, map.mapper);
+  }
+  return recording_ ? recording_->update(map.camera, map.mapper) : "";
 }
 
 void MapSaver::saveOnTheWay(const pf::SurfelMap& map) {

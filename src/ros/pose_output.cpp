@@ -49,8 +49,10 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
   reset();
 }
 
-void PoseOutput::reset() {
+void PoseOutput::reset(bool is_loaded) {
+  is_loaded_ = is_loaded;
   T_map_start_.reset();
+  path_mounts_.clear();
   T_map_base_before_.reset();
   path_.poses.clear();
   path_.header.frame_id = settings_.map_frame;
@@ -82,9 +84,9 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   if (!look(image, links, note)) return false;
   const bool has_robot = !settings_.base_frame.empty() || !settings_.odom_frame.empty();
   if (!T_map_start_) {
-    const Eigen::Isometry3d T_map_camera =
-        has_robot ? links.T_odom_base * links.T_base_camera : pf::bodyFromOptical();
-    T_map_start_ = T_map_camera * status.T_map_camera.inverse();
+    const Eigen::Isometry3d T_body_camera = has_robot ? links.T_base_camera : pf::bodyFromOptical();
+    T_map_start_ = is_loaded_ ? T_body_camera
+                              : links.T_odom_base * T_body_camera * status.T_map_camera.inverse();
   }
   const Eigen::Isometry3d T_map_camera = *T_map_start_ * status.T_map_camera;
   const Eigen::Isometry3d T_map_base = T_map_camera * links.T_base_camera.inverse();
@@ -101,8 +103,22 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   pose.header.frame_id = settings_.map_frame;
   pose.pose = toPose(T_map_base);
   pose_.publish(pose);
-  extendPath(pose);
+  extendPath(pose, links.T_base_camera);
   return true;
+}
+
+void PoseOutput::correct(const pf::Trajectory& corrected) {
+  if (!T_map_start_) return;
+  auto camera = corrected.begin();
+  for (std::size_t i = 0; i < path_.poses.size(); ++i) {
+    geometry_msgs::PoseStamped& pose = path_.poses[i];
+    while (camera != corrected.end() && camera->stamp_ns < toNs(pose.header.stamp)) ++camera;
+    if (camera == corrected.end()) break;
+    if (camera->stamp_ns != toNs(pose.header.stamp)) continue;
+    pose.pose = toPose(*T_map_start_ * camera->T_world_camera * path_mounts_[i].inverse());
+  }
+  T_map_base_before_.reset();  // the step of a correction is no motion
+  path_sent_ = ros::Time();
 }
 
 std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
@@ -145,10 +161,12 @@ void PoseOutput::sendOdometry(const ros::Time& stamp, const Links& links,
   before_ = stamp;
 }
 
-void PoseOutput::extendPath(const geometry_msgs::PoseStamped& pose) {
+void PoseOutput::extendPath(const geometry_msgs::PoseStamped& pose,
+                            const Eigen::Isometry3d& T_base_camera) {
   const ros::Time stamp = pose.header.stamp;
   if (path_.poses.empty() || stamp - path_.poses.back().header.stamp >= kPathStep) {
     path_.poses.push_back(pose);
+    path_mounts_.push_back(T_base_camera);
   }
   if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.publishing.path_period_s)
     return;

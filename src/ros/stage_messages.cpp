@@ -95,6 +95,8 @@ TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Heade
   message.geometric_rmse_m = tracking.geometric_rmse_m;
   message.photometric_rmse = tracking.photometric_rmse;
   message.surfels = status.surfels;
+  message.map_version = static_cast<std::uint32_t>(status.map_version);
+  message.fragment = static_cast<std::uint32_t>(status.fragment);
   message.tracking_ms = status.tracking_ms;
   message.fusion_ms = status.fusion_ms;
   return message;
@@ -120,6 +122,7 @@ pf::FrameStatus fromMessage(const TrackingStatusMsg& message) {
 std::string outcomeName(std::uint8_t outcome) {
   if (outcome == TrackingStatusMsg::DROPPED) return "dropped";
   if (outcome == TrackingStatusMsg::NO_DETECTOR) return "no_detector";
+  if (outcome == TrackingStatusMsg::PAUSED) return "paused";
   return std::string(pf::name(static_cast<pf::FrameOutcome>(outcome)));
 }
 

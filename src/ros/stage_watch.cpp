@@ -17,8 +17,9 @@ constexpr double kSilent_s = 5.0;
 constexpr double kManyGivenUp = 0.1;
 constexpr std::size_t kLatencies = 300;  // ten seconds of frames
 
-bool isBlur(std::uint8_t outcome) {
-  return outcome == TrackingStatusMsg::BLURRED || outcome == TrackingStatusMsg::FORCED;
+bool isHarmless(std::uint8_t outcome) {
+  return outcome == TrackingStatusMsg::BLURRED || outcome == TrackingStatusMsg::FORCED ||
+         outcome == TrackingStatusMsg::PAUSED;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ void StageWatch::givenUp(Time now, std::uint8_t outcome) {
   const std::lock_guard<std::mutex> lock(mutex_);
   heard_ = now;
   ++given_up_[outcomeName(outcome)];
-  if (!isBlur(outcome)) ++new_given_up_;
+  if (!isHarmless(outcome)) ++new_given_up_;
 }
 
 void StageWatch::set(const std::string& key, const std::string& value) {
@@ -50,11 +51,16 @@ void StageWatch::tell(int level, const std::string& text) {
   told_ = text;
 }
 
+void StageWatch::allowSilence() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  may_be_silent_ = true;
+}
+
 void StageWatch::judge(Time now, diagnostic_updater::DiagnosticStatusWrapper& out) const {
   out.summary(DiagnosticStatus::OK, "frames pass");
   if (level_ != DiagnosticStatus::OK) out.mergeSummary(level_, told_);
   const double silent_s = duration<double>(now - heard_).count();
-  if (silent_s >= kSilent_s)
+  if (silent_s >= kSilent_s && !may_be_silent_)
     out.mergeSummaryf(DiagnosticStatus::WARN, "no frame for %.0f s", silent_s);
   const std::size_t came = new_passed_ + new_given_up_;
   if (static_cast<double>(new_given_up_) > kManyGivenUp * static_cast<double>(came)) {

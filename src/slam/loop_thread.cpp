@@ -2,51 +2,50 @@
 #include "posefusion/slam/loop_thread.hpp"
 
 #include <chrono>
+#include <deque>
+#include <future>
 #include <utility>
 
-#include "posefusion/slam/mapper.hpp"
-
 namespace pf {
+namespace {
+
+class ThreadResponder : public LoopResponder {
+ public:
+  ThreadResponder(const LoopConfig& config, const TrackingConfig& tracking)
+      : worker_(std::make_shared<LoopWorker>(config, tracking)) {}
+
+  void ask(LoopQuestion question) override {
+    // Each question waits for the one before: the worker sees them in their order.
+    auto work = [worker = worker_, before = last_, question = std::move(question)] {
+      if (before.valid()) before.wait();
+      return worker->answer(question);
+    };
+    last_ = std::async(std::launch::async, std::move(work)).share();
+    answers_.push_back(last_);
+  }
+
+  bool isReady() override {
+    return answers_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
+  std::optional<LoopAnswer> take() override {
+    const std::shared_future<LoopAnswer> answer = std::move(answers_.front());
+    answers_.pop_front();
+    return answer.get();
+  }
+
+  void forget() override { answers_.clear(); }
+
+ private:
+  std::shared_ptr<LoopWorker> worker_;
+  std::shared_future<LoopAnswer> last_;  ///< of the newest question
+  std::deque<std::shared_future<LoopAnswer>> answers_;
+};
+
+}  // namespace
 
 LoopThread::LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time)
-    : lag_frames_(config.answer_lag_frames),
-      time_(time),
-      worker_(std::make_shared<LoopWorker>(config, tracking)) {}
-
-void LoopThread::serve(Mapper& mapper) {
-  if (auto question = mapper.takeQuestion()) ask(std::move(*question));
-  while (isDue()) takeOne(mapper);
-  ++number_;
-}
-
-void LoopThread::finish(Mapper& mapper) {
-  while (!asked_.empty()) takeOne(mapper);
-}
-
-void LoopThread::reset() { asked_.clear(); }
-
-void LoopThread::ask(LoopQuestion question) {
-  // Each question waits for the one before: the worker sees them in their order.
-  auto work = [worker = worker_, before = last_, question = std::move(question)] {
-    if (before.valid()) before.wait();
-    return worker->answer(question);
-  };
-  last_ = std::async(std::launch::async, std::move(work)).share();
-  asked_.push_back({number_, last_});
-}
-
-bool LoopThread::isDue() const {
-  if (asked_.empty()) return false;
-  const Asked& first = asked_.front();
-  if (time_ == AnswerTime::after_lag) return number_ >= first.number + lag_frames_;
-  return first.answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-void LoopThread::takeOne(Mapper& mapper) {
-  const std::shared_future<LoopAnswer> answer = asked_.front().answer;
-  asked_.pop_front();
-  mapper.take(answer.get());
-  counts_ = answer.get().counts;
-}
+    : LoopExchange(config.answer_lag_frames, time,
+                   std::make_unique<ThreadResponder>(config, tracking)) {}
 
 }  // namespace pf

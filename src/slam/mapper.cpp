@@ -2,6 +2,7 @@
 #include "posefusion/slam/mapper.hpp"
 
 #include "mapper_state.hpp"
+#include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
 
 namespace pf {
@@ -131,6 +132,14 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;
   return status;
+}
+
+void Mapper::setUse(MapUse use) {
+  State& s = *state_;
+  if (use == MapUse::localize_only && s.back_end.graph().keyframes().empty()) {
+    throw InputError("there is no map to localise in: nothing was mapped");
+  }
+  s.may_change = use == MapUse::extend;
 }
 
 const std::vector<KeyframeView>& Mapper::keyframeViews() const { return state_->views; }

@@ -18,7 +18,11 @@ constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
 void Mapper::State::countLostTime(const Location& location, double elapsed_s) {
   const bool lost = location.state == TrackingState::lost;
   if (lost && lost_s == 0 && fragment != 0) map_at_loss.reset();  // the fragment belongs into it
-  lost_s = lost ? lost_s + std::min(elapsed_s, kMostElapsed_s) : 0.0;
+  if (!lost) lost_s = 0;
+  // A covered camera is not in a place that nobody knows.
+  if (lost && location.outcome != FrameOutcome::no_depth) {
+    lost_s += std::min(elapsed_s, kMostElapsed_s);
+  }
 }
 
 /// Lost for long, and no place to come back to is being proven.
@@ -75,6 +79,7 @@ void Mapper::State::placeFragment(const TrackingResult& alignment) {
                                              keyframe.T_map_camera,
                                          kAlike_m, kAlike_rad);
   seen_at = place;
+  frames_to_place = 0;  // the second answer soon
   if (again) correct({place.constraint});
 }
 

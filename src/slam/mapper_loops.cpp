@@ -45,7 +45,7 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
   views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
   if (!config.loop.enabled) return;
-  question.emplace();
+  question.emplace().stamp_ns = last_stamp_ns;
   if (std::exchange(closer_is_old, false)) {
     question->known.emplace(views.begin(), views.end() - 1);
     keyframes_moved = true;
@@ -66,9 +66,14 @@ void Mapper::State::askForPlace() {
   }
   if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
   if (!question) question.emplace();
+  question->stamp_ns = last_stamp_ns;
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
+  }
+  if (std::exchange(closer_is_old, false)) {
+    question->known.emplace(views.begin(), views.end());
+    question->corrected = back_end.keyframePoses();
   }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();
@@ -103,11 +108,13 @@ void Mapper::take(const LoopAnswer& answer) {
     s.place_is_asked = false;
     if (answer.place && !s.place_is_stale) {
       s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
-      if (s.at_question.keyframe >= 0) s.placeFragment(answer.place->alignment);
+      if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(answer.place->alignment);
     }
   }
-  if (!answer.loops.empty()) s.correct(answer.loops);
+  if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
 }
+
+void Mapper::introduceCloser() { state_->closer_is_old = !state_->views.empty(); }
 
 void Mapper::load(SavedMap saved, MapUse use) {
   if (saved.frame < 0 || saved.keyframes.empty()) {
@@ -134,6 +141,22 @@ void Mapper::load(SavedMap saved, MapUse use) {
   }
   s.localiser.beginLost(poses.back(), saved.brightness);
   s.showFrom(poses.back(), false);
+}
+
+SavedMap Mapper::saved(const PinholeCamera& camera) const {
+  const State& s = *state_;
+  const PoseGraph& graph = s.back_end.graph();
+  SavedMap saved;
+  saved.camera = camera;
+  saved.brightness = s.localiser.brightness();
+  saved.surfels = s.map.collect();
+  saved.frame = s.map.frame();
+  saved.keyframes = graph.keyframes();
+  saved.constraints = graph.constraints();
+  saved.graph_version = graph.version();
+  saved.frames = s.back_end.frames();
+  saved.views = s.views;
+  return saved;
 }
 
 }  // namespace pf

@@ -165,6 +165,7 @@ class Feeder {
   void onStatus(const TrackingStatusMsg::ConstPtr& status) {
     std::string name(pf::name(static_cast<pf::FrameOutcome>(status->outcome)));
     if (status->outcome == TrackingStatusMsg::DROPPED) name = status->reason;
+    if (status->outcome == TrackingStatusMsg::PAUSED) name = "paused";
     if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
     {
       const std::lock_guard<std::mutex> lock(outcome_mutex_);

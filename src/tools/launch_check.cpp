@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/run_folder.hpp"
+#include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/pose/detector.hpp"
 #include "posefusion/pose/model_settings.hpp"
 #include "posefusion/slam/config.hpp"
@@ -110,7 +112,23 @@ void checkNetwork(const pf::PoseConfig& config) {
   pf::findModelSettings(model);
 }
 
-void checkInput(const Given& given, const pf::Config& config) {
+/// The camera of the map file that is begun in; nothing where there is none.
+std::optional<pf::PinholeCamera> checkMap(const Given& given) {
+  const auto isSet = [&](const std::string& name) {
+    return given[name] == "true" || given[name] == "1";
+  };
+  if (isSet("localize_only") && isSet("continue_map")) {
+    throw InputError("arguments localize_only and continue_map: expected one of them");
+  }
+  if (!given["map"].empty()) return pf::readSavedMap(given["map"]).camera;
+  if (isSet("localize_only") || isSet("continue_map")) {
+    throw InputError("arguments localize_only and continue_map need a map:=FILE");
+  }
+  return std::nullopt;
+}
+
+void checkInput(const Given& given, const pf::Config& config,
+                const std::optional<pf::PinholeCamera>& of_map) {
   posefusion_ros::InputOptions options;
   options.camera_file = given["camera_file"];
   options.topics.color = given["color_topic"];
@@ -122,6 +140,9 @@ void checkInput(const Given& given, const pf::Config& config) {
     throw InputError("detector:=recorded: " + bag +
                      " has no recorded people, expected people.json or a topic of them");
   }
+  if (!of_map) return;
+  const std::string defect = pf::cameraDefect(given["map"], *of_map, *source, bag);
+  if (!defect.empty()) throw InputError(defect);
 }
 
 void check(const std::string& launch_file, const Given& given) {
@@ -131,7 +152,8 @@ void check(const std::string& launch_file, const Given& given) {
   if (config.pose.detector == "network" && given["without_people_if_no_detector"] != "true") {
     checkNetwork(config.pose);
   }
-  if (!given["bag"].empty()) checkInput(given, config);
+  const auto of_map = checkMap(given);
+  if (!given["bag"].empty()) checkInput(given, config, of_map);
   if (!given["output"].empty()) pf::RunFolder(given["output"]).removeIfEmpty();
 }
 

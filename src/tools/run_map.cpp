@@ -2,10 +2,8 @@
 #include "run_map.hpp"
 
 #include <filesystem>
-#include <sstream>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/frame/working_frame.hpp"
 
 namespace pf {
 namespace {
@@ -14,24 +12,6 @@ namespace fs = std::filesystem;
 
 constexpr char kPartial[] = "/map.partial.pfdb", kWhole[] = "/map.pfdb";
 constexpr char kLog[] = "-wal";  // SQLite's companion file
-
-std::string textOf(const PinholeCamera& c) {
-  std::ostringstream out;
-  out << c.width << " x " << c.height << ", fx " << c.fx << " fy " << c.fy << " cx " << c.cx
-      << " cy " << c.cy;
-  return out.str();
-}
-
-/// The camera of the input's frames, rectified as the chain does; nothing when no frame is good.
-std::optional<PinholeCamera> cameraOf(const RunOptions& options) {
-  const auto source = posefusion_ros::openInput(options.input, options.reading);
-  while (const auto next = source->next()) {
-    if (next->defect.empty() && defectOf(next->frame).empty()) {
-      return Rectifier().rectify(next->frame).camera;
-    }
-  }
-  return std::nullopt;
-}
 
 /// What a killed run left is kept as `.old`.
 void setAside(const std::string& path) {
@@ -45,11 +25,9 @@ void setAside(const std::string& path) {
 
 void loadMap(const RunOptions& options, Pipeline& pipeline) {
   SavedMap map = readSavedMap(options.map_file);
-  const auto camera = cameraOf(options);
-  if (camera && *camera != map.camera) {
-    throw InputError(options.map_file + ": is a map of another camera (" + textOf(map.camera) +
-                     ") than " + options.input + " (" + textOf(*camera) + ")");
-  }
+  const auto source = posefusion_ros::openInput(options.input, options.reading);
+  const std::string defect = cameraDefect(options.map_file, map.camera, *source, options.input);
+  if (!defect.empty()) throw InputError(defect);
   try {
     pipeline.load(std::move(map), options.localize_only ? MapUse::localize_only : MapUse::extend);
   } catch (const InputError& error) {

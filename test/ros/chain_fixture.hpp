@@ -65,16 +65,16 @@ inline std::string posesIn(const std::string& file) {
   return poses;
 }
 
-/// The four nodelets in this process, in a namespace of their own, and a camera that feeds them.
+/// The five nodelets in this process, in a namespace of their own, and a camera that feeds them.
 class Chain {
  public:
   static const std::vector<std::string>& nodelets() {
     static const std::vector<std::string> names = {"blur_gate", "pose_detector", "segmenter",
-                                                   "fusion"};
+                                                   "loop_closer", "fusion"};
     return names;
   }
 
-  /// Sets a private parameter of all four; before load().
+  /// Sets a private parameter of all; before load().
   template <typename Value>
   void set(const std::string& name, const Value& value) {
     for (const auto& nodelet : nodelets())
@@ -91,10 +91,14 @@ class Chain {
   }
 
   /// Loads the chain; true once it reports.
-  bool load() {
-    return load(nodelets()) && waitUntil([this] {
-             return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0;
-           });
+  bool load() { return load(nodelets()) && isUp(); }
+  /// The chain without the loop closer.
+  bool loadWithoutCloser() {
+    return load({"blur_gate", "pose_detector", "segmenter", "fusion"}) && isUp();
+  }
+  bool isUp() {
+    return waitUntil(
+        [this] { return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0; });
   }
   bool load(const std::vector<std::string>& names) {
     for (const auto& nodelet : names) {
@@ -134,6 +138,15 @@ class Chain {
     return statuses_;
   }
 
+  /// Calls a service of fusion whose request is one string, `field`.
+  template <typename Service>
+  typename Service::Response call(const std::string& service, std::string Service::Request::*field,
+                                  const std::string& value) {
+    Service call;
+    call.request.*field = value;
+    EXPECT_TRUE(ros::service::call(space_ + "/fusion/" + service, call));
+    return call.response;
+  }
   std_srvs::TriggerResponse call(const std::string& service) {
     std_srvs::Trigger trigger;
     EXPECT_TRUE(ros::service::call(space_ + "/fusion/" + service, trigger));

@@ -64,6 +64,7 @@ TEST(ChainDiagnostics, TellTheFramesAndTheMap) {
   }
   EXPECT_TRUE(diagnostics.waitFor("blur_gate", "given up: bad_input", "1"));
   EXPECT_TRUE(diagnostics.waitFor("fusion", "given up: bad_input", "1")) << "it counts for all";
+  EXPECT_TRUE(diagnostics.waitFor("loop_closer", "frames", "1")) << "the first keyframe";
   EXPECT_EQ(diagnostics.value("segmenter", "people"), "0");
   EXPECT_EQ(diagnostics.value("fusion", "state"), "tracking");
   EXPECT_EQ(diagnostics.value("fusion", "lost for (s)"), "0.0");

@@ -82,10 +82,13 @@ TEST(ChainUnloading, EachGoesWhileImagesFlow) {
     chain.send(restamped(m, stamp_ns));
     ros::WallDuration(0.01).sleep();
   });
-  for (std::size_t first = 0; first < 8; ++first) {
+  const auto& nodelets = Chain::nodelets();
+  for (std::size_t first = 0; first < 2 * nodelets.size(); ++first) {
     ASSERT_TRUE(chain.load());
     ASSERT_TRUE(chain.waitForStatuses(chain.statuses().size() + 3));
-    for (std::size_t i = 0; i < 4; ++i) chain.unload(Chain::nodelets()[(first + i) % 4]);
+    for (std::size_t i = 0; i < nodelets.size(); ++i) {
+      chain.unload(nodelets[(first + i) % nodelets.size()]);
+    }
     ASSERT_TRUE(chain.hasLostFusion());
   }
 }

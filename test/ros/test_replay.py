@@ -97,6 +97,18 @@ class Replay(unittest.TestCase):
         self.assertIn(f"{FRAMES} frames sent", text)
         self.assertTrue(os.path.exists(self.folder + "/live/latest/trajectory.txt"), text)
 
+    def test_localize_only_leaves_the_map_file_as_it_is(self):
+        self.replay("bag:=sequence.bag", "detector:=none", "output:=mapped")
+        file = pathlib.Path(self.folder, "mapped/latest/map.pfdb")
+        shutil.copy(file, self.folder + "/known.pfdb")
+        before = file.read_bytes()
+        text = self.replay("bag:=sequence.bag", "detector:=none", "output:=localized", "map:=known.pfdb",
+                           "localize_only:=true")
+        self.assertIn(f"{FRAMES} frames sent", text)
+        self.assertNotRegex(text, r"ERROR|FATAL|has died|no loop closer")
+        self.assertEqual(pathlib.Path(self.folder, "known.pfdb").read_bytes(), before)
+        self.assertFalse(list(pathlib.Path(self.folder).glob("localized/*/map.pfdb")))
+
     def test_relative_paths_are_those_of_the_call(self):
         text = self.replay("bag:=sequence.bag", "detector:=none", "output:=near", "frame_id:=eye",
                            "color_topic:=/camera/rgb/image_color", "max_frames:=2")
@@ -115,6 +127,9 @@ class Replay(unittest.TestCase):
                 (("publish_tf:=ture",), "publish_tf:=ture, expected true or false"),
                 (("color_topic:=/nothing",), "topic /nothing is not in the bag"),
                 (("output:=file",), self.folder + "/file"),
+                (("map:=nothing.pfdb",), self.folder + "/nothing.pfdb: cannot be opened"),
+                (("map:=file",), self.folder + "/file: is no map of posefusion"),
+                (("localize_only:=true",), "localize_only and continue_map need a map:=FILE"),
                 (("detector:=recorded", "bag:=" + self.folder + "/no_people"), "no recorded people")):
             if not any(a.startswith("bag:=") for a in arguments):
                 arguments += ("bag:=sequence.bag",)

@@ -5,6 +5,7 @@
 #include <future>
 #include <string>
 
+#include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/map_database.hpp"
 #include "posefusion/slam/mapper.hpp"
 
@@ -13,6 +14,15 @@ namespace pf {
 /// Reads all of a map file that a mapper needs. Throws InputError naming the file and what is wrong
 /// with it.
 SavedMap readSavedMap(const std::string& path);
+
+/// Why frames of this (rectified) camera do not fit the map of a file; empty when they do. `whose`:
+/// words for where the frames are from.
+std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
+                         const PinholeCamera& of_frames, const std::string& whose);
+
+/// The same of the first good frame of a recording, which is read for it.
+std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,
+                         const std::string& whose);
 
 /// Keeps a map file up to date while a mapper works: about every second a copy of what has changed
 /// is written in a thread of its own, so that a killed process leaves a whole map. Its owner's
@@ -27,7 +37,8 @@ class MapRecording {
   /// last write (empty: nothing): it is tried again with the next.
   std::string update(const PinholeCamera& camera, const Mapper& mapper);
 
-  /// Writes the rest. Tells whether there is a map at all. Throws InputError naming the file.
+  /// Writes the rest; update() may go on. Tells whether there is a map at all. Throws InputError
+  /// naming the file.
   bool finish(const Mapper& mapper);
 
  private:
@@ -38,6 +49,7 @@ class MapRecording {
     int keyframes = 0;
   };
 
+  static Written amountOf(const Mapper& mapper);
   MapUpdate changes(const Mapper& mapper) const;
   std::string takeResult();
 

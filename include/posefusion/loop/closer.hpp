@@ -46,6 +46,10 @@ class LoopCloser {
   /// than the last id wants.
   void setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera);
 
+  /// Where in the map a picture may have been taken (camera poses, not verified): its features
+  /// matched with those of the keyframes whose ferns are most alike.
+  std::vector<Eigen::Isometry3d> placesLike(const KeyframeView& view) const;
+
   /// Verified constraints from older keyframes to the last one added; at most one for each.
   std::vector<LoopConstraint> findLoops();
 
@@ -56,6 +60,7 @@ class LoopCloser {
   struct Keyframe {
     KeyframeView view;
     Features features;
+    FernCode code;
   };
   /// An older keyframe and where the last one may be in its frame.
   struct Guess {
@@ -70,7 +75,6 @@ class LoopCloser {
   TrackingConfig tracking_;
   std::deque<Keyframe> keyframes_;
   FernDatabase ferns_;
-  FernCode code_;  ///< of the last keyframe
   LoopCounts counts_;
 };
 

@@ -37,8 +37,8 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
             "frames between a question to the loop closer and its answer, offline and in lossless "
             "replay");
   v.number("new_fragment_after_s", c.new_fragment_after_s, 0.0, 1e6,
-           "a camera lost for so long begins a new piece of the map, until it is known where that "
-           "is; 0: never");
+           "a lost camera that sees something for so long begins a new piece of the map, until its "
+           "place is known; 0: never");
 }
 
 }  // namespace pf

@@ -22,6 +22,7 @@ struct PlaceQuestion {
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
 struct LoopQuestion {
+  std::int64_t stamp_ns = 0;             ///< of the frame that asks
   std::optional<KeyframeView> keyframe;  ///< number 0 begins a new map
   /// The keyframes of a map just loaded, as far as their images are known: what was before is
   /// forgotten.

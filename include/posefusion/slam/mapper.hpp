@@ -44,6 +44,9 @@ class Mapper {
   /// where a lost camera is.
   std::optional<LoopQuestion> takeQuestion();
 
+  /// Somebody else answers from now on: the next question tells of all keyframes.
+  void introduceCloser();
+
   /// Takes in an answer: a loop corrects the map and all poses; a place found brings a lost camera
   /// back, once the next frames agree.
   void take(const LoopAnswer& answer);
@@ -51,6 +54,12 @@ class Mapper {
   /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
   /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
   void load(SavedMap map, MapUse use);
+
+  /// From the next frame on. Throws InputError where there is no map to localise in.
+  void setUse(MapUse use);
+
+  /// All that load() needs to go on from here; `camera`: of the frames.
+  SavedMap saved(const PinholeCamera& camera) const;
 
   /// What the keyframes saw, rising by number; those of a loaded map as far as known.
   const std::vector<KeyframeView>& keyframeViews() const;

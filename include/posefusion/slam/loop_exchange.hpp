@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "posefusion/loop/worker.hpp"
+
+namespace pf {
+
+class Mapper;
+
+/// When answers are taken.
+enum class AnswerTime {
+  after_lag,  ///< so many frames after the question, waited for: the same on every machine
+  when_ready  ///< live: nobody waits
+};
+
+/// Answers questions in their order, beside the mapper: in a thread, or in another nodelet. The
+/// owner's thread alone may call it.
+class LoopResponder {
+ public:
+  virtual ~LoopResponder() = default;
+
+  virtual void ask(LoopQuestion question) = 0;
+
+  /// Whether take() would not wait. There is a question that was not taken yet.
+  virtual bool isReady() = 0;
+
+  /// The answer to the oldest question that was not taken yet, waited for; nothing where it was
+  /// given up. Throws what the work threw.
+  virtual std::optional<LoopAnswer> take() = 0;
+
+  /// Forgets all questions that were not taken yet.
+  virtual void forget() = 0;
+
+  /// Whether, since the last call, somebody else has begun to answer, who knows no keyframes.
+  virtual bool isReplaced() { return false; }
+};
+
+/// Carries the questions of a mapper to the loop closer, and the answers back when they are due.
+/// Its owner's thread alone may call it.
+class LoopExchange {
+ public:
+  LoopExchange(int lag_frames, AnswerTime time, std::unique_ptr<LoopResponder> responder)
+      : lag_frames_(lag_frames), time_(time), responder_(std::move(responder)) {}
+
+  /// After each frame of the mapper. What the closer threw is thrown here; it goes on afterwards.
+  void serve(Mapper& mapper);
+
+  /// After the last frame: waits for all answers and hands them on.
+  void finish(Mapper& mapper);
+
+  /// Forgets what is still unanswered; for a mapper that was reset.
+  void reset();
+
+  /// As of the last answer.
+  const LoopCounts& counts() const { return counts_; }
+
+  /// Questions that were given up.
+  std::size_t unanswered() const { return unanswered_; }
+
+ private:
+  struct Asked {
+    std::int64_t number = 0;
+    bool for_place = false;
+  };
+
+  bool isDue() const;
+  void takeOne(Mapper& mapper);
+
+  int lag_frames_;
+  AnswerTime time_;
+  std::unique_ptr<LoopResponder> responder_;
+  std::deque<Asked> asked_;
+  std::int64_t number_ = 0;  ///< of the frame
+  std::size_t unanswered_ = 0;
+  LoopCounts counts_;
+};
+
+}  // namespace pf

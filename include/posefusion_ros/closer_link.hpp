@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "posefusion/slam/loop_exchange.hpp"
+#include "posefusion_ros/loop_messages.hpp"
+
+namespace posefusion_ros {
+
+/// The way from fusion to the nodelet posefusion/loop_closer and back, by topics. A closer that is
+/// missing is not waited for, one that does not answer only once until it answers again; what
+/// it says later is not used. One thread uses it, besides isThere() and hurry(); answers come in a
+/// queue that this thread serves while it looks for them.
+class CloserLink : public pf::LoopResponder {
+ public:
+  /// `timeout_s`: how long an answer is waited for at most, wall time.
+  CloserLink(const ros::NodeHandle& handle, double timeout_s);
+  ~CloserLink() override;
+
+  void ask(pf::LoopQuestion question) override;
+  bool isReady() override;
+  std::optional<pf::LoopAnswer> take() override;
+  void forget() override;
+  bool isReplaced() override;
+
+  /// Whether a closer is connected. Thread safe.
+  bool isThere() const { return answer_subscriber_.getNumPublishers() > 0; }
+
+  /// From now on, until hurry(false), nothing is waited for; who was waited for counts as stalled.
+  /// Thread safe.
+  void hurry(bool hurries) { hurries_ = hurries; }
+
+  /// What went wrong since the last call; empty for nothing.
+  std::string takeComplaint() { return std::exchange(complaint_, {}); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Asked {
+    std::uint64_t number = 0;
+    Clock::time_point when;
+    bool is_lost = false;  // who was asked is gone
+  };
+
+  void onAnswer(const LoopAnswerMessage::ConstPtr& answer);
+  void listen(std::chrono::milliseconds patience);
+  bool isAnswered() const { return answers_.count(asked_.front().number) > 0; }
+  bool isLost() const;
+  void wait();
+  void stall();
+
+  ros::CallbackQueue queue_;  // of answers: outlives its subscriber
+  ros::Publisher question_publisher_;
+  ros::Subscriber answer_subscriber_;
+  const Clock::duration timeout_;
+  const std::uint64_t session_ = newIdentity();
+  std::uint64_t number_ = 0;
+  std::deque<Asked> asked_;
+  std::map<std::uint64_t, LoopAnswerMessage::ConstPtr> answers_;  // by number
+  std::uint64_t closer_ = 0;  // who answered last; 0: nobody yet
+  bool was_there_ = true, is_replaced_ = false, is_stalled_ = false;
+  std::atomic<bool> hurries_{false};
+  std::string complaint_;
+};
+
+}  // namespace posefusion_ros

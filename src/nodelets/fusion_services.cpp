@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fusion_services.hpp"
+
+#include <ros/console.h>
+
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion_ros/trigger.hpp"
+
+namespace posefusion_ros {
+
+FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session, Post post,
+                               std::function<void()> shows_another)
+    : session_(session), post_(std::move(post)), shows_another_(std::move(shows_another)) {
+  services_ = {handle.advertiseService("save_map", &FusionServices::onSave, this),
+               handle.advertiseService("load_map", &FusionServices::onLoad, this),
+               handle.advertiseService("set_mode", &FusionServices::onSetMode, this),
+               handle.advertiseService("pause", &FusionServices::onPause, this),
+               handle.advertiseService("resume", &FusionServices::onResume, this),
+               handle.advertiseService("reset", &FusionServices::onReset, this)};
+}
+
+void FusionServices::shutdown() {
+  for (ros::ServiceServer& service : services_) service.shutdown();
+}
+
+bool FusionServices::onSave(Trigger::Request& /*request*/, Trigger::Response& response) {
+  return answer([this] { return session_.save(); }, response);
+}
+
+bool FusionServices::onReset(Trigger::Request& /*request*/, Trigger::Response& response) {
+  const auto task = [this] {
+    std::string said = session_.reset();
+    shows_another_();
+    return said;
+  };
+  return answer(task, response);
+}
+
+bool FusionServices::onLoad(LoadMap::Request& request, LoadMap::Response& response) {
+  std::string file;
+  pf::SavedMap map;
+  try {  // the chain goes on while the file is read
+    file = session_.saver().resolve(request.file);
+    map = pf::readSavedMap(file);
+  } catch (const std::exception& error) {
+    response.message = error.what();
+    ROS_ERROR("%s", error.what());
+    return true;
+  }
+  const auto task = [&] {
+    std::string said = session_.load(file, std::move(map));
+    shows_another_();
+    return said;
+  };
+  return answer(task, response);
+}
+
+bool FusionServices::onSetMode(SetMode::Request& request, SetMode::Response& response) {
+  const auto task = [&] {
+    if (request.mode == "mapping") return session_.setUse(pf::MapUse::extend);
+    if (request.mode == "localisation") return session_.setUse(pf::MapUse::localize_only);
+    throw pf::InputError("mode '" + request.mode + "', expected mapping or localisation");
+  };
+  return answer(task, response);
+}
+
+bool FusionServices::onPause(Trigger::Request& /*request*/, Trigger::Response& response) {
+  const auto task = [this] {
+    is_paused_ = true;
+    return std::string("paused: frames are reported and not looked at");
+  };
+  return answer(task, response);
+}
+
+bool FusionServices::onResume(Trigger::Request& /*request*/, Trigger::Response& response) {
+  const auto task = [this] {
+    is_paused_ = false;
+    return std::string("frames are looked at");
+  };
+  return answer(task, response);
+}
+
+template <typename Response>
+bool FusionServices::answer(const std::function<std::string()>& task, Response& response) {
+  answerTrigger(post_, task, response);
+  if (response.success) {
+    ROS_INFO("%s", response.message.c_str());
+  } else {
+    ROS_ERROR("%s", response.message.c_str());
+  }
+  return true;
+}
+
+}  // namespace posefusion_ros

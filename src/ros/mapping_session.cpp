@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/mapping_session.hpp"
+
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using pf::InputError;
+using pf::MapUse;
+
+constexpr char kImages[] = "the images";
+
+pf::AnswerTime answerTime(bool lossless) {
+  return lossless ? pf::AnswerTime::after_lag : pf::AnswerTime::when_ready;
+}
+
+}  // namespace
+
+MappingSettings readMapping(Parameters& parameters) {
+  MappingSettings s;
+  s.config = parameters.config({"frame", "tracking", "map", "loop", "graph"});
+  s.lossless = parameters.flag("lossless", false);
+  s.saver = readMapSaver(parameters);
+  s.saver.settings = pf::toYaml(s.config);
+  s.map_file = parameters.text("map_file", "");
+  s.localize_only = parameters.flag("localize_only", false);
+  s.continue_map = parameters.flag("continue_map", false);
+  if (s.map_file.empty() && (s.localize_only || s.continue_map)) {
+    throw InputError("localize_only and continue_map need a map: map_file is empty");
+  }
+  if (s.localize_only && s.continue_map) {
+    throw InputError("localize_only and continue_map: expected one of them");
+  }
+  return s;
+}
+
+MappingSession::MappingSession(const MappingSettings& settings,
+                               std::unique_ptr<pf::LoopResponder> closer)
+    : config_(settings.config),
+      saver_(settings.saver),
+      mapper_(std::make_unique<pf::Mapper>(settings.config)),
+      loops_(settings.config.loop.answer_lag_frames, answerTime(settings.lossless),
+             std::move(closer)) {
+  if (settings.map_file.empty()) return;
+  use_ = settings.localize_only ? MapUse::localize_only : MapUse::extend;
+  pf::SavedMap saved = pf::readSavedMap(settings.map_file);
+  camera_ = saved.camera;
+  mapper_ = begunIn(std::move(saved), settings.map_file, use_);
+  map_file_ = settings.map_file;
+  if (settings.continue_map) saver_.continueIn(map_file_, toSave());
+}
+
+pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::string& trouble) {
+  trouble.clear();
+  if (isLoaded() && input.frame.camera != camera_) {
+    pf::FrameStatus status = mapper_->skip(input.frame.stamp_ns, pf::FrameOutcome::bad_input);
+    status.detail = pf::cameraDefect(map_file_, camera_, input.frame.camera, kImages);
+    return status;
+  }
+  const pf::FrameStatus status = mapper_->process(input);
+  try {
+    loops_.serve(*mapper_);
+  } catch (const std::exception& error) {
+    trouble = error.what();
+  }
+  if (status.outcome != pf::FrameOutcome::bad_input) camera_ = input.frame.camera;
+  if (!status.located) return status;
+  const bool fused = status.outcome == pf::FrameOutcome::fused && use_ == MapUse::extend;
+  const std::string unwritten =
+      saver_.note({status.stamp_ns, status.T_map_camera}, toSave(), fused);
+  if (!unwritten.empty()) trouble = unwritten;
+  return status;
+}
+
+void MappingSession::clear() {
+  mapper_->reset();
+  loops_.reset();
+  use_ = MapUse::extend;
+  map_file_.clear();
+}
+
+std::string MappingSession::reset() {
+  std::string said = saver_.beginAnew(toSave());
+  clear();
+  return said + (said.empty() ? "" : "; ") + "the map is empty, the next frame begins a new one";
+}
+
+std::unique_ptr<pf::Mapper> MappingSession::begunIn(pf::SavedMap map, const std::string& file,
+                                                    MapUse use) {
+  auto mapper = std::make_unique<pf::Mapper>(config_);
+  try {
+    mapper->load(std::move(map), use);
+  } catch (const InputError& error) {
+    throw InputError(file + ": " + error.what());
+  }
+  return mapper;
+}
+
+std::string MappingSession::load(const std::string& file, pf::SavedMap map) {
+  if (camera_.width > 0 && map.camera != camera_) {
+    throw InputError(pf::cameraDefect(file, map.camera, camera_, kImages));
+  }
+  const pf::PinholeCamera camera = map.camera;
+  auto loaded = begunIn(std::move(map), file, use_);
+  std::string said = saver_.beginAnew(toSave());
+  mapper_ = std::move(loaded);
+  loops_.reset();
+  map_file_ = file;
+  camera_ = camera;
+  return said + (said.empty() ? "" : "; ") + "the map is that of " + file + ", with " +
+         std::to_string(mapper_->map().size()) + " surfels; the camera is looked for in it";
+}
+
+std::string MappingSession::setUse(MapUse use) {
+  mapper_->setUse(use);
+  use_ = use;
+  return use == MapUse::extend ? "mapping: the map grows" : "localisation: the map does not change";
+}
+
+std::string MappingSession::startAnew(std::string& lost) {
+  std::string said;
+  lost.clear();
+  try {
+    said = saver_.beginAnew(toSave());
+  } catch (const std::exception& error) {  // the new map is worth more than the old one
+    lost = error.what();
+    saver_.abandon();
+  }
+  if (use_ == MapUse::extend) {
+    clear();
+  } else {
+    mapper_ = begunIn(mapper_->saved(camera_), map_file_, use_);
+    loops_.reset();
+  }
+  return said;
+}
+
+std::string MappingSession::finish() {
+  try {
+    loops_.finish(*mapper_);
+  } catch (const std::exception&) {  // what it still had to say
+  }
+  return saver_.finish(toSave());
+}
+
+}  // namespace posefusion_ros
