@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "posefusion/core/trajectory.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "temporary_folder.hpp"
@@ -27,6 +28,20 @@ SurfelMap mapOf(const SurfelArrays& surfels) {
   SurfelMap map(MapConfig{}, 1000.0F);
   map.add(surfels);
   return map;
+}
+
+TEST(MapFile, LiesInTheFrameThatIsAskedFor) {
+  const TemporaryFolder folder;
+  const SurfelArrays surfels = surfelsOf(9);
+  saveMap(folder / "m.ply", mapOf(surfels), bodyFromOptical());
+  const SurfelArrays read = loadMap(folder / "m.ply");
+  ASSERT_EQ(read.size(), 9U);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read.x[i], surfels.z[i]) << "forward";
+    EXPECT_EQ(read.y[i], -surfels.x[i]) << "left";
+    EXPECT_EQ(read.z[i], -surfels.y[i]) << "up";
+    EXPECT_EQ(read.nz[i], -surfels.ny[i]);
+  }
 }
 
 TEST(MapFile, ReadsBackTheStableSurfels) {

@@ -150,7 +150,29 @@ TEST_F(RunReportTest, TrajectoryHasTheLocatedFramesAlone) {
   const Trajectory written = loadTrajectory(folder / "trajectory.txt");
   ASSERT_EQ(written.size(), 29U);
   EXPECT_EQ(written[7].stamp_ns, 800 * kMs);
-  EXPECT_NEAR(written[7].T_world_camera.translation().x(), 0.64, 1e-9);
+  EXPECT_NEAR(written[7].T_world_camera.translation().y(), -0.64, 1e-9) << "to the right, z up";
+}
+
+TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
+  ProcessedFrame frame = frameAt(30, FrameOutcome::fused);
+  frame.seen.gate_ms = frame.segmentation_ms = std::nan("");
+  RunStatistics statistics;
+  statistics.add(frame);
+  EXPECT_EQ(statistics.stages().count("gate"), 0U);
+  EXPECT_EQ(statistics.stages().count("fusion"), 1U);
+
+  report.addLeftOut("dropped");
+  report.setCorrected(Trajectory(report.trajectory()));
+  report.writeSummary(folder.str(), map, 17);
+  const auto s = nlohmann::json::parse(readFile(folder / "summary.json"));
+  EXPECT_EQ(s.at("surfels"), 17);
+  EXPECT_EQ(s.at("frames").at("read"), 31);
+  EXPECT_EQ(s.at("frames").at("left_out"), 1);
+  EXPECT_EQ(s.at("frames").at("by_outcome").at("dropped"), 1);
+  EXPECT_NEAR(s.at("ate_rmse_m").get<double>(), 0, 1e-9);
+  EXPECT_FALSE(s.contains("loops"));
+  EXPECT_FALSE(s.contains("peak_memory_mb"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "trajectory.txt")) << "the chain has written it";
 }
 
 TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {

@@ -13,7 +13,8 @@ SOURCES = ("include", "src", "test", "scripts", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "blur", "frame", "pose", "segmentation", "tracking", "graph", "map",
-          "loop", "slam", "io", "evaluation", "run", "simulator", "ros", "openni2", "nodelets", "tools")
+          "loop", "slam", "io", "evaluation", "run", "simulator", "ros", "openni2", "nodelets", "tools",
+          "viewer")
 FORMATTER = "version 14."  # of clang-format: others lay out some lines differently
 
 
@@ -138,7 +139,8 @@ class Bench(unittest.TestCase):
 
 class Repository(unittest.TestCase):
     def test_core_includes_no_ros(self):
-        outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "include/posefusion_ros/")
+        outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "src/viewer/",
+                   "include/posefusion_ros/")
         ros = re.compile(r'#include\s*[<"](ros|nodelet|pluginlib|tf2_ros|tf2_eigen|cv_bridge|\w+_msgs|'
                          r'message_filters|image_transport|std_srvs|dynamic_reconfigure|'
                          r'diagnostic_updater|camera_info_manager)/')
@@ -209,6 +211,15 @@ class Repository(unittest.TestCase):
                 found += 1
             found += len(named)
         self.assertGreater(found, 30)
+
+    def test_every_setting_is_used(self):
+        """A setting that only its own list knows would be believed to do something."""
+        code = "".join(path.read_text() for path in files("include", "src")
+                       if path.suffix in (".hpp", ".cpp") and path.name != "config.hpp")
+        settings = known_settings()
+        self.assertGreater(len(settings), 50)
+        dead = sorted(key for key in settings if not re.search(rf"\b{key.partition('.')[2]}\b", code))
+        self.assertEqual(dead, [])
 
     def test_options_in_readme_exist(self):
         known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench"))

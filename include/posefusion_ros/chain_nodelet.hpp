@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <diagnostic_updater/diagnostic_updater.h>
 #include <nodelet/nodelet.h>
 #include <ros/publisher.h>
 #include <std_msgs/Header.h>
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "posefusion_ros/messages.hpp"
 #include "posefusion_ros/parameters.hpp"
 #include "posefusion_ros/queue_keeper.hpp"
+#include "posefusion_ros/stage_watch.hpp"
 
 namespace posefusion_ros {
 
@@ -20,8 +24,11 @@ constexpr int kInternalQueue = 100;
 
 /// What the nodelets of the chain have in common: no exception leaves them, a frame that is given
 /// up is told to fusion (which reports one status for every frame), parameters are reported at the
-/// start.
+/// start, and /diagnostics tells every `~diagnostic_period` seconds (wall) how the stage is.
 class ChainNodelet : public nodelet::Nodelet {
+ public:
+  ~ChainNodelet() override { diagnostics_timer_.stop(); }
+
  protected:
   /// Reads parameters, advertises, makes the stage, subscribes last. What it throws is logged, and
   /// the nodelet stays idle, or ends the process where `~end_on_error` says that it is ours alone.
@@ -32,6 +39,16 @@ class ChainNodelet : public nodelet::Nodelet {
 
   /// Calls `work` for the frame of `header`; what it throws is logged and the frame is given up.
   void guarded(const std_msgs::Header& header, const std::function<void()>& work);
+
+  /// A frame is done with and passed on.
+  void passed(const ros::Time& stamp);
+
+  /// For the stage that hears of every frame, in place of passed(): one that was not fused counts
+  /// as given up, by whichever stage. From the first call on reject() does not count.
+  void noteOutcome(const ros::Time& stamp, std::uint8_t outcome);
+
+  /// For what the stage itself has to tell.
+  StageWatch& watch() { return watch_; }
 
   /// Logs the parameters that are not the defaults, and warns of those that nobody knows.
   void report(const Parameters& parameters);
@@ -47,8 +64,13 @@ class ChainNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() final;
+  void startDiagnostics();
 
   QueueKeeper queues_;
+  std::atomic<bool> hears_all_{false};
+  StageWatch watch_{std::chrono::steady_clock::now()};
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
+  ros::WallTimer diagnostics_timer_;
   ros::Publisher rejected_;
   ros::WallTimer ready_timer_;
 };

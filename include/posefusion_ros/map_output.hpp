@@ -2,25 +2,39 @@
 #pragma once
 
 #include <ros/node_handle.h>
+#include <sensor_msgs/PointCloud2.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "posefusion/slam/mapper.hpp"
-#include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/running_settings.hpp"
 
 namespace posefusion_ros {
 
 /// Publishes what the map holds: the surfels for people to look at (throttled, only while someone
-/// listens) and, after each frame, the view that the segmenter needs.
+/// listens; at once to someone new) and, after each frame, the view that the segmenter needs.
 class MapOutput {
  public:
-  /// Reads `surfels_period_s` and `surfels_max_points`.
-  MapOutput(ros::NodeHandle& handle, Parameters& parameters, const std::string& map_frame);
+  /// `newcomer` is called, in the queue of `handle`, when someone begins to listen to the surfels:
+  /// publishSurfels() gives them the map even where no frame comes any more.
+  MapOutput(ros::NodeHandle& handle, const PublishingConfig& config, const std::string& map_frame,
+            const std::function<void()>& newcomer);
+
+  /// No more surfels, and no call of `newcomer` once this has returned.
+  void close() { surfel_publisher_.shutdown(); }
+
+  void set(const PublishingConfig& config) { config_ = config; }
 
   /// `T_map_start`: the core's map in the map frame; nothing is published while it is unknown.
   void publishSurfels(const pf::SurfelMap& map, const ros::Time& stamp,
                       const std::optional<Eigen::Isometry3d>& T_map_start);
+
+  /// The stable surfels, at most so many (0: all); null while the map frame is unknown.
+  sensor_msgs::PointCloud2::Ptr cloud(const pf::SurfelMap& map, const ros::Time& stamp,
+                                      const std::optional<Eigen::Isometry3d>& T_map_start,
+                                      std::size_t max_points) const;
 
   /// The view as it is after the frame of `stamp`. `reset`: the map was emptied on request.
   void publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset);
@@ -30,8 +44,7 @@ class MapOutput {
 
  private:
   std::string map_frame_;
-  double surfels_period_s_;
-  int surfels_max_points_;
+  PublishingConfig config_;
   ros::Publisher surfel_publisher_, view_publisher_;
   ros::Time surfels_sent_;
 };

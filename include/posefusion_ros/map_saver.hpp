@@ -34,9 +34,10 @@ struct MapToSave {
   pf::Trajectory trajectory() const { return mapper.backEnd().trajectory(); }
 };
 
-/// Writes map.ply, map.pfdb (where the map has changed) and trajectory.txt, in the core's map frame
-/// (the first camera pose), as the offline runner does. Each map gets a pf::RunFolder of its own,
-/// so that none is written over by another. Until it is saved, trajectory.partial.txt and
+/// Writes map.ply, map.pfdb (where the map has changed) and trajectory.txt. The files but map.pfdb
+/// lie in the map frame of TF; where no robot says otherwise that is the frame in which the offline
+/// runner writes them. Each map gets a pf::RunFolder of its own, so that none is written over by
+/// another. Until it is saved, trajectory.partial.txt and
 /// map.partial.pfdb grow there.
 class MapSaver {
  public:
@@ -53,6 +54,9 @@ class MapSaver {
   /// A map that has just been loaded from a file is written on in that file. Throws InputError
   /// naming it.
   void continueIn(const std::string& file, const MapToSave& map);
+
+  /// The core's map in the map frame, once it is known; until then the first camera is level.
+  void setFrame(const Eigen::Isometry3d& T_map_start) { T_map_start_ = T_map_start; }
 
   /// Returns a sentence that tells what was written where. Throws InputError when there is nothing
   /// to save, or naming what cannot be written.
@@ -90,6 +94,7 @@ class MapSaver {
   std::string endSaveOnTheWay();
 
   MapSaverSettings settings_;
+  Eigen::Isometry3d T_map_start_ = pf::bodyFromOptical();
   std::optional<pf::RunFolder> folder_;             // of the map that grows now
   std::deque<pf::RunFolder> ended_;                 // of the maps before it, oldest first
   std::unique_ptr<pf::TrajectoryJournal> journal_;  // from the first pose on

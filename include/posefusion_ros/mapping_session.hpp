@@ -38,6 +38,13 @@ class MappingSession {
   const pf::Mapper& mapper() const { return *mapper_; }
   const pf::LoopExchange& loops() const { return loops_; }
   const MapSaver& saver() const { return saver_; }
+  /// See MapSaver.
+  void setFrame(const Eigen::Isometry3d& T_map_start) { saver_.setFrame(T_map_start); }
+  /// From the next frame on, for this map and those after it.
+  void set(const pf::TrackingConfig& tracking) {
+    config_.tracking = tracking;
+    mapper_->set(tracking);
+  }
   pf::MapUse use() const { return use_; }
   bool isLoaded() const { return !map_file_.empty(); }  ///< the map began in a file
 

@@ -20,8 +20,9 @@ struct Range {
   double max = 0.0;
 };
 
-/// A private parameter of each nodelet of the chain, which unknown() leaves out: see ChainNodelet.
+/// Private parameters of each nodelet of the chain, which unknown() leaves out: see ChainNodelet.
 constexpr char kEndOnError[] = "end_on_error";
+constexpr char kDiagnosticPeriod[] = "diagnostic_period";
 
 /// The private parameters of one nodelet: its own ones, and the groups of pf::Config
 /// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by
@@ -61,6 +62,34 @@ class Parameters {
   std::string origin_;
   pf::YamlMap values_;  ///< of tree_
   std::ostringstream effective_, changed_;
+};
+
+/// Reads the fields of a list without groups as parameters of the nodelet itself.
+class ParameterFields : public pf::FieldVisitor {
+ public:
+  explicit ParameterFields(Parameters& parameters) : parameters_(parameters) {}
+
+  void enter(const std::string& /*group*/) override {}
+  void leave() override {}
+  void flag(const char* name, bool& value, const char*) override {
+    value = parameters_.flag(name, value);
+  }
+  void number(const char* name, double& value, double min, double max, const char*) override {
+    value = parameters_.number(name, value, {min, max});
+  }
+  void integer(const char* name, int& value, int min, int max, const char*) override {
+    value = parameters_.integer(name, value, {static_cast<double>(min), static_cast<double>(max)});
+  }
+  void text(const char* name, std::string& value, const char*) override {
+    value = parameters_.text(name, value);
+  }
+  void choice(const char* name, std::string& value, const std::vector<std::string>& words,
+              const char*) override {
+    value = parameters_.choice(name, value, words);
+  }
+
+ private:
+  Parameters& parameters_;
 };
 
 /// A parameter tree as YAML, for the loader that files and command lines use too.

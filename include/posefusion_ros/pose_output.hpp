@@ -13,6 +13,8 @@
 
 #include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/parameters.hpp"
+#include "posefusion_ros/parent_watch.hpp"
+#include "posefusion_ros/running_settings.hpp"
 #include "posefusion_ros/transforms.hpp"
 
 namespace posefusion_ros {
@@ -24,7 +26,7 @@ struct PoseOutputSettings {
   std::string odom_frame;  ///< empty: nobody owns odometry, map -> base is published
   std::string base_frame;  ///< empty: the optical frame of the camera
   LookupSettings lookup;
-  double path_period_s = 1.0;
+  PublishingConfig publishing;
 };
 
 PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless);
@@ -40,8 +42,9 @@ class PoseOutput {
   PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings);
 
   /// Publishes the pose of a located frame; `image` is the header of its colour image. False when
-  /// nothing could be published, for want of a transform. `note`: what is missing, or which
-  /// transform is older than the image; empty when all is well.
+  /// nothing could be published, for want of a transform. `note`: what is missing, which transform
+  /// is older than the image, or who sends ours already (it is not sent then); empty when all is
+  /// well.
   bool publish(const std_msgs::Header& image, const pf::FrameStatus& status, std::string& note);
 
   /// The core's map in the map frame; nothing until the first pose could be published.
@@ -53,17 +56,23 @@ class PoseOutput {
   /// Another map. `is_loaded`: it began in a session before.
   void reset(bool is_loaded = false);
 
+  void set(const PublishingConfig& publishing) { settings_.publishing = publishing; }
+
  private:
   struct Links;  // camera and odometry of the robot at the stamp
   bool look(const std_msgs::Header& image, Links& links, std::string& note);
-  void sendTransform(const ros::Time& stamp, const std::string& child, const Eigen::Isometry3d& T);
+  /// Says why it is not sent; empty when it is.
+  std::string sendTransform(const ros::Time& stamp, const std::string& child,
+                            const Eigen::Isometry3d& T);
   void sendOdometry(const ros::Time& stamp, const Links& links, const Eigen::Isometry3d& T_map_base,
                     const pf::Matrix6d& covariance);
   void extendPath(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& T_base_camera);
 
   PoseOutputSettings settings_;
   ros::Publisher odometry_, pose_, path_publisher_;
-  std::unique_ptr<ListeningLookup> lookup_;  // only where a frame has to be looked up
+  std::unique_ptr<ListeningLookup> lookup_;        // only where a frame has to be looked up
+  std::unique_ptr<ListeningParentWatch> parents_;  // only where transforms are sent
+  bool sends_ = false;                             // the last transform was sent
   tf2_ros::TransformBroadcaster broadcaster_;
   std::optional<Eigen::Isometry3d> T_map_start_;
   bool is_loaded_ = false;

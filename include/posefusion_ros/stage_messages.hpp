@@ -5,6 +5,8 @@
 #include <std_msgs/Header.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
 
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/skeleton.hpp"
@@ -27,6 +29,12 @@ pf::SparseFlow fromMessage(const SparseFlowMsg& message);
 /// frame.
 TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Header& header,
                             const Eigen::Isometry3d& T_map_camera);
+
+/// Outcome, state, pose (in the map frame of the message) and times; the rest is not in a message.
+pf::FrameStatus fromMessage(const TrackingStatusMsg& message);
+
+/// "fused", "blurred", "dropped": an outcome of TrackingStatusMsg as one word.
+std::string outcomeName(std::uint8_t outcome);
 
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T);
 

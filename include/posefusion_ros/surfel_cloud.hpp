@@ -9,6 +9,18 @@
 
 namespace posefusion_ros {
 
+/// A point of the cloud, as it lies in the message.
+struct SurfelPoint {
+  float x, y, z;  ///< map frame, m
+  float rgb;      ///< packed as PCL does
+  float normal_x, normal_y, normal_z;
+  float radius;  ///< m
+  float confidence;
+};
+
+/// The points (width of them) of a cloud that toCloud() made; null for any other.
+const SurfelPoint* surfelsOf(const sensor_msgs::PointCloud2& cloud);
+
 /// The stable surfels as a cloud: x y z (m), rgb (packed as PCL does), normal_x normal_y normal_z,
 /// radius (m), confidence (frames), all 32-bit floats, moved by T_map_start into the map frame.
 /// Where there are more than `max_points` (0: any number), evenly many are left out.

@@ -19,10 +19,6 @@ namespace posefusion_ros {
 /// Name of a frame without the leading slash of older bags.
 std::string plainFrame(const std::string& frame_id);
 
-/// Rotation from a camera's optical frame (z forward, x right, y down) to a body frame (x forward,
-/// y left, z up) that looks the same way (REP-103).
-Eigen::Isometry3d bodyFromOptical();
-
 /// The covariance of a body's pose in a parent frame as geometry_msgs/PoseWithCovariance has it:
 /// of the position of the body's origin (m) and of the rotation about the parent's axes (rad).
 /// `camera` is that of a small motion (m, rad) of a camera on the body, in the camera's own axes:

@@ -31,7 +31,7 @@ BlurScore BlurGate::judge(const Sharpness& sharpness) {
   drops_in_a_row_ = result.sharp ? 0 : drops_in_a_row_ + 1;
   // Dropped frames count too: what lasts longer than a burst of blur is how the scene looks now.
   if (!unknown) recent_.push_back(sharpness.fine_detail);
-  if (static_cast<int>(recent_.size()) > config_.history_frames) recent_.pop_front();
+  while (static_cast<int>(recent_.size()) > config_.history_frames) recent_.pop_front();
   return result;
 }
 

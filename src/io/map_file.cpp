@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/graph/fragments.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
@@ -27,11 +28,14 @@ unsigned char toByte(float value) {
   return static_cast<unsigned char>(std::lround(std::min(255.0F, std::max(0.0F, value))));
 }
 
-void pack(const SurfelArrays& s, std::size_t i, char* out) {
-  packPoint({{s.x[i], s.y[i], s.z[i]},
-             {s.nx[i], s.ny[i], s.nz[i]},
-             {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])}},
-            out);
+void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char* out) {
+  SurfacePoint point;
+  Eigen::Vector3f& p = point.position;
+  Eigen::Vector3f& n = point.normal;
+  motion.point(s.x[i], s.y[i], s.z[i], p.x(), p.y(), p.z());
+  motion.direction(s.nx[i], s.ny[i], s.nz[i], n.x(), n.y(), n.z());
+  point.color = {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])};
+  packPoint(point, out);
   const std::array<float, 2> rest = {s.radius[i], s.confidence[i]};
   std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
@@ -64,7 +68,9 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
 
 }  // namespace
 
-std::size_t saveMap(const std::string& path, const SurfelMap& map) {
+std::size_t saveMap(const std::string& path, const SurfelMap& map,
+                    const Eigen::Isometry3d& T_file_map) {
+  const RigidMotion motion(T_file_map);
   const auto is_written = [&](const SurfelArrays& s, std::size_t i) {
     return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
   };
@@ -76,7 +82,7 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map) {
   std::array<char, kVertexBytes> vertex{};
   map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
     if (!is_written(surfels, i)) return;
-    pack(surfels, i, vertex.data());
+    pack(surfels, i, motion, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
   });
   file.commit();

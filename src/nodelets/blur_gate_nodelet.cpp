@@ -10,6 +10,8 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/input_pairing.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/running_settings.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/topic_hints.hpp"
 #include "posefusion_ros/transforms.hpp"
 
@@ -51,6 +53,10 @@ class BlurGateNodelet : public ChainNodelet {
     info_publisher_ = handle.advertise<sensor_msgs::CameraInfo>(topics::kSharpCameraInfo, queue);
     depth_publisher_ = handle.advertise<sensor_msgs::Image>(topics::kSharpDepth, queue);
     color_publisher_ = handle.advertise<sensor_msgs::Image>(topics::kSharpColor, queue);
+    // In the queue of the frames: a change falls between two of them.
+    settings_ = std::make_unique<SettingsServer<GateSettings>>(
+        getPrivateNodeHandle(), GateSettings{config_},
+        [this](const GateSettings& settings) { gate_->set(settings.blur); });
     timer_ = handle.createWallTimer(ros::WallDuration(missing_after_s_),
                                     &BlurGateNodelet::tellMissing, this);
     color_ = handle.subscribe(topics::kColor, queue, &BlurGateNodelet::onColor, this);
@@ -111,6 +117,7 @@ class BlurGateNodelet : public ChainNodelet {
         same_depth ? depth : ImageConstPtr(toImage(frame.depth, depth->encoding, header)));
     color_publisher_.publish(same_color ? color
                                         : ImageConstPtr(toImage(frame.color, "rgb8", header)));
+    passed(header.stamp);
   }
 
   void tellMissing(const ros::WallTimerEvent&) {
@@ -144,6 +151,7 @@ class BlurGateNodelet : public ChainNodelet {
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;
   ros::Subscriber color_, depth_, info_;
   ros::WallTimer timer_;
+  std::unique_ptr<SettingsServer<GateSettings>> settings_;
 };
 
 }  // namespace posefusion_ros

@@ -10,9 +10,12 @@
 #include "posefusion_ros/closer_link.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/map_output.hpp"
+#include "posefusion_ros/map_query.hpp"
 #include "posefusion_ros/mapping_session.hpp"
+#include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -32,6 +35,9 @@ class FusionNodelet : public ChainNodelet {
     rejected_.shutdown();
     input_.reset();
     if (services_) services_->shutdown();
+    settings_.reset();
+    map_query_.reset();
+    if (map_output_) worker_->post([this] { map_output_->close(); }).get();
     worker_.reset();
     if (!session_) return;                    // start() may have failed anywhere
     if (is_lossless_) closer_->hurry(false);  // what it still has to say counts
@@ -55,7 +61,6 @@ class FusionNodelet : public ChainNodelet {
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
     const double patience_s = parameters.number("closer_timeout_s", 20.0, {0.01, 3600.0});
     auto closer = std::make_unique<CloserLink>(handle, patience_s);
-    map_output_ = std::make_unique<MapOutput>(handle, parameters, map_frame_);
     report(parameters);
     CloserLink* const link = closer.get();
     session_ = std::make_unique<MappingSession>(settings, std::move(closer));
@@ -65,7 +70,9 @@ class FusionNodelet : public ChainNodelet {
     pose_output_->reset(session_->isLoaded());
     worker_ = std::make_unique<Worker<Set>>(settings.lossless ? 0 : queue,
                                             [this](const Set& set) { process(set); });
-    offerServices();
+    map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
+                                              [this] { worker_->post([this] { showMap(); }); });
+    offerServices({settings.config.tracking, poses.publishing});
     rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
     input_ = std::make_unique<FusionInput>(handle, [this](const Set& set) { onSet(set); });
     // A chain that is lossless waits for the closer too, so that the first answer is not missed.
@@ -79,12 +86,34 @@ class FusionNodelet : public ChainNodelet {
         [this] { advertiseStatus(); });
   }
 
-  void offerServices() {
+  void offerServices(const FusionSettings& initial) {
     // Services wait for the worker: in a queue of their own.
-    services_ = std::make_unique<FusionServices>(
-        getMTPrivateNodeHandle(), *session_,
-        [this](std::function<void()> task) { return worker_->post(std::move(task)); },
-        [this] { showAnother(); });
+    ros::NodeHandle& handle = getMTPrivateNodeHandle();
+    const auto post = [this](std::function<void()> task) { return worker_->post(std::move(task)); };
+    services_ =
+        std::make_unique<FusionServices>(handle, *session_, post, [this] { showAnother(); });
+    map_query_ = std::make_unique<MapQuery>(handle, post, [this](std::size_t max_points) {
+      return map_output_->cloud(session_->mapper().map(), last_, pose_output_->mapFromStart(),
+                                max_points);
+    });
+    const auto apply = [this](const FusionSettings& settings) {
+      session_->set(settings.tracking);
+      pose_output_->set(settings.publishing);
+      map_output_->set(settings.publishing);
+    };
+    settings_ = std::make_unique<SettingsServer<FusionSettings>>(
+        handle, initial,
+        [post, apply](const FusionSettings& settings) { post([&] { apply(settings); }).get(); });
+  }
+
+  /// To someone who has just begun to listen.
+  void showMap() {
+    map_output_->reset();
+    publishMap(last_);
+  }
+
+  void publishMap(const ros::Time& stamp) {
+    map_output_->publishSurfels(session_->mapper().map(), stamp, pose_output_->mapFromStart());
   }
 
   void advertiseStatus() {
@@ -135,8 +164,8 @@ class FusionNodelet : public ChainNodelet {
     if (session_->mapper().backEnd().graph().version() != version) {
       pose_output_->correct(session_->mapper().backEnd().trajectory());
     }
-    map_output_->publishSurfels(session_->mapper().map(), header.stamp,
-                                pose_output_->mapFromStart());
+    mapping_watch_.note(status, session_->mapper(), session_->loops().counts(), watch());
+    publishMap(header.stamp);
     publishStatus(status, header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
   }
 
@@ -144,6 +173,7 @@ class FusionNodelet : public ChainNodelet {
   void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
     std::string note;
     if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
+    if (pose_output_->mapFromStart()) session_->setFrame(*pose_output_->mapFromStart());
     if (!reason.empty() && !note.empty()) reason += "; ";
     reason += note;
   }
@@ -156,12 +186,13 @@ class FusionNodelet : public ChainNodelet {
 
   void publishStatus(const FrameStatus& status, const ros::Time& stamp, const std::string& reason,
                      std::uint8_t outcome) {
+    noteOutcome(stamp, outcome);
     std_msgs::Header header;
     header.stamp = stamp;
     header.frame_id = map_frame_;
-    TrackingStatusMsg message =
-        toMessage(status, header,
-                  pose_output_->mapFromStart().value_or(bodyFromOptical()) * status.T_map_camera);
+    TrackingStatusMsg message = toMessage(
+        status, header,
+        pose_output_->mapFromStart().value_or(pf::bodyFromOptical()) * status.T_map_camera);
     message.outcome = outcome;
     message.reason = reason;
     message.unanswered = session_->loops().unanswered();
@@ -193,6 +224,7 @@ class FusionNodelet : public ChainNodelet {
   bool is_lossless_ = false;
   CloserLink* closer_ = nullptr;  // of session_
   std::unique_ptr<MappingSession> session_;
+  MappingWatch mapping_watch_;
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;
@@ -202,6 +234,8 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<FusionInput> input_;
   ros::Subscriber rejected_;
   std::unique_ptr<FusionServices> services_;
+  std::unique_ptr<SettingsServer<FusionSettings>> settings_;
+  std::unique_ptr<MapQuery> map_query_;
 };
 
 }  // namespace posefusion_ros

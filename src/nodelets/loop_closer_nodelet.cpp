@@ -28,6 +28,7 @@ class LoopCloserNodelet : public ChainNodelet {
     Parameters parameters(getPrivateNodeHandle());
     const pf::Config config = parameters.config({"loop", "tracking"});
     report(parameters);
+    watch().allowSilence();  // questions are asked now and then
     closer_ = std::make_unique<pf::LoopWorker>(config.loop, config.tracking);
     worker_ =
         std::make_unique<Worker<Question>>(0, [this](const Question& asked) { answer(asked); });
@@ -60,6 +61,8 @@ class LoopCloserNodelet : public ChainNodelet {
     } catch (const std::exception& error) {
       message->error = error.what();
     }
+    watch().set("questions waiting", std::to_string(worker_->waiting()));
+    passed(asked->header.stamp);
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (publisher_) publisher_.publish(LoopAnswerMessage::ConstPtr(message));
   }

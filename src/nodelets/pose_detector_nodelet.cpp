@@ -11,6 +11,8 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/running_settings.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/worker.hpp"
 
@@ -45,6 +47,15 @@ class PoseDetectorNodelet : public ChainNodelet {
           guarded(std::get<2>(set)->header, [&] { detect(set); });
         });
     loaded_ = worker_->post([this] { load(); });
+    settings_ = std::make_unique<SettingsServer<DetectorSettings>>(
+        getMTPrivateNodeHandle(), DetectorSettings{config_},
+        [this](const DetectorSettings& settings) {
+          worker_
+              ->post([&] {
+                if (detector_) detector_->set(settings.pose);
+              })
+              .get();
+        });
     ros::NodeHandle& handle = getNodeHandle();
     info_ = handle.subscribe(topics::kSharpCameraInfo, kInternalQueue, &PoseDetectorNodelet::onInfo,
                              this);
@@ -69,9 +80,11 @@ class PoseDetectorNodelet : public ChainNodelet {
       pf::RecordedPeople recorded;
       if (config_.detector == "recorded") recorded = recordedPeople();
       detector_ = pf::makePoseDetector(config_, std::move(recorded));
+      watch().set("detector", config_.detector);
       NODELET_INFO("pose detector ready (%s)", config_.detector.c_str());
     } catch (const std::exception& error) {
       no_detector_ = error.what();
+      watch().tell(diagnostic_msgs::DiagnosticStatus::ERROR, "no detector: " + no_detector_);
       NODELET_ERROR("%s. %s", error.what(),
                     go_on_ ? "The chain goes on without removing people."
                            : "No frame is used (~without_people_if_no_detector: true goes on).");
@@ -119,7 +132,9 @@ class PoseDetectorNodelet : public ChainNodelet {
       reject(color->header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");
       return;
     }
+    if (people.detected) watch().set("people", std::to_string(people.people.size()));
     people_.publish(boost::make_shared<const PeopleMsg>(toMessage(people, color->header)));
+    passed(color->header.stamp);
   }
 
   pf::PoseConfig config_;
@@ -135,6 +150,7 @@ class PoseDetectorNodelet : public ChainNodelet {
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.
   ros::Subscriber info_, depth_, color_;
+  std::unique_ptr<SettingsServer<DetectorSettings>> settings_;
 };
 
 }  // namespace posefusion_ros

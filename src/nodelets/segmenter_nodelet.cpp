@@ -13,6 +13,8 @@
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/running_settings.hpp"
+#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/skeleton_markers.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transforms.hpp"
@@ -39,8 +41,8 @@ class SegmenterNodelet : public ChainNodelet {
 
   void start() override {
     Parameters parameters(getPrivateNodeHandle());
-    segmenter_ =
-        std::make_unique<pf::PeopleSegmenter>(parameters.config({"segmentation"}).segmentation);
+    const SegmenterSettings settings = {parameters.config({"segmentation"}).segmentation};
+    segmenter_ = std::make_unique<pf::PeopleSegmenter>(settings.segmentation);
     lossless_ = parameters.flag("lossless", false);
     up_frame_ = plainFrame(parameters.text("up_frame", ""));
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
@@ -53,6 +55,10 @@ class SegmenterNodelet : public ChainNodelet {
     worker_ = std::make_unique<Worker<Matcher::Set>>(
         lossless_ ? 0 : queue, [this](const Matcher::Set& set) {
           guarded(std::get<2>(set)->header, [&] { segment(set); });
+        });
+    settings_ = std::make_unique<SettingsServer<SegmenterSettings>>(
+        getMTPrivateNodeHandle(), settings, [this](const SegmenterSettings& changed) {
+          worker_->post([&] { segmenter_->set(changed.segmentation); }).get();
         });
     ros::NodeHandle& handle = getNodeHandle();
     view_ = handle.subscribe(topics::kModelView, kInternalQueue, &SegmenterNodelet::onView, this);
@@ -165,6 +171,8 @@ class SegmenterNodelet : public ChainNodelet {
     };
     in_map_publisher_.publish(orNobody(result.in_map_mask));
     mask_publisher_.publish(orNobody(result.mask));
+    watch().set("people", std::to_string(result.people.people.size()));
+    passed(header.stamp);
   }
 
   bool lossless_ = false;
@@ -181,6 +189,7 @@ class SegmenterNodelet : public ChainNodelet {
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.
   ros::Subscriber view_, info_, depth_, color_, people_;
+  std::unique_ptr<SettingsServer<SegmenterSettings>> settings_;
 };
 
 }  // namespace posefusion_ros

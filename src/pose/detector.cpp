@@ -52,6 +52,8 @@ class NetworkDetector : public PoseDetector {
             assemblePeople(maps, network_.settings(), peaks_, frame.color.size(), config_)};
   }
 
+  void set(const PoseConfig& config) override { config_ = config; }
+
  private:
   PoseConfig config_;
   PoseNetwork network_;

@@ -24,14 +24,45 @@ void ChainNodelet::onInit() {
     queues_.keep(getNodeHandle());
     queues_.keep(getMTNodeHandle());
     rejected_ = getNodeHandle().advertise<TrackingStatusMsg>(topics::kRejected, kRejectedQueue);
+    startDiagnostics();
     start();
   } catch (const std::exception& error) {
     bool end = false;
     getPrivateNodeHandle().param(kEndOnError, end, false);
+    watch_.tell(diagnostic_msgs::DiagnosticStatus::ERROR, error.what());
     NODELET_FATAL("%s: %s", end ? "cannot start" : "stays idle", error.what());
     // The manager is that of the launch file alone where this is set.
     if (end) ros::requestShutdown();
   }
+}
+
+void ChainNodelet::startDiagnostics() {
+  ros::NodeHandle& own = getPrivateNodeHandle();
+  double period_s = 1.0;
+  own.param(kDiagnosticPeriod, period_s, period_s);
+  if (!(period_s >= 0.01)) {
+    throw pf::InputError("parameter " + own.resolveName(kDiagnosticPeriod) + " is " +
+                         std::to_string(period_s) + ", expected at least 0.01 s");
+  }
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), own, getName());
+  diagnostics_->setHardwareID("none");
+  diagnostics_->add("frames", [this](diagnostic_updater::DiagnosticStatusWrapper& out) {
+    watch_.report(std::chrono::steady_clock::now(), out);
+  });
+  // A queue of its own kind: the serial one may be held up, which is what should be told.
+  diagnostics_timer_ = getMTNodeHandle().createWallTimer(
+      ros::WallDuration(period_s),
+      ros::WallTimerCallback([this](const ros::WallTimerEvent&) { diagnostics_->force_update(); }));
+}
+
+void ChainNodelet::passed(const ros::Time& stamp) {
+  watch_.passed(std::chrono::steady_clock::now(), (ros::Time::now() - stamp).toSec());
+}
+
+void ChainNodelet::noteOutcome(const ros::Time& stamp, std::uint8_t outcome) {
+  hears_all_ = true;
+  if (outcome == TrackingStatusMsg::FUSED) return passed(stamp);
+  watch_.givenUp(std::chrono::steady_clock::now(), outcome);
 }
 
 void ChainNodelet::reject(const std_msgs::Header& header, std::uint8_t outcome,
@@ -40,6 +71,7 @@ void ChainNodelet::reject(const std_msgs::Header& header, std::uint8_t outcome,
     NODELET_WARN_THROTTLE(kThrottle_s, "frame %u.%09u not used: %s", header.stamp.sec,
                           header.stamp.nsec, reason.c_str());
   }
+  if (!hears_all_) watch_.givenUp(std::chrono::steady_clock::now(), outcome);
   const auto status = boost::make_shared<TrackingStatusMsg>();
   status->header = header;
   status->outcome = outcome;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/map_output.hpp"
 
-#include <sensor_msgs/PointCloud2.h>
-
 #include "posefusion_ros/messages.hpp"
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/names.hpp"
@@ -10,23 +8,35 @@
 
 namespace posefusion_ros {
 
-MapOutput::MapOutput(ros::NodeHandle& handle, Parameters& parameters, const std::string& map_frame)
+MapOutput::MapOutput(ros::NodeHandle& handle, const PublishingConfig& config,
+                     const std::string& map_frame, const std::function<void()>& newcomer)
     : map_frame_(map_frame),
-      surfels_period_s_(parameters.number("surfels_period_s", 1.0, {0.0, 3600.0})),
-      surfels_max_points_(parameters.integer("surfels_max_points", 500000, {0, 100000000})),
-      surfel_publisher_(handle.advertise<sensor_msgs::PointCloud2>(topics::kSurfels, 1, true)),
+      config_(config),
+      surfel_publisher_(handle.advertise<sensor_msgs::PointCloud2>(
+          topics::kSurfels, 1, [newcomer](const ros::SingleSubscriberPublisher&) { newcomer(); },
+          ros::SubscriberStatusCallback(), ros::VoidConstPtr(), true)),
       // Latched: the segmenter may connect after the first frame.
       view_publisher_(handle.advertise<ModelViewMsg>(topics::kModelView, 1, true)) {}
 
 void MapOutput::publishSurfels(const pf::SurfelMap& map, const ros::Time& stamp,
                                const std::optional<Eigen::Isometry3d>& T_map_start) {
   if (!T_map_start || surfel_publisher_.getNumSubscribers() == 0) return;
-  if (!surfels_sent_.isZero() && (stamp - surfels_sent_).toSec() < surfels_period_s_) return;
+  const double age_s = (stamp - surfels_sent_).toSec();
+  if (!surfels_sent_.isZero() && age_s < config_.surfels_period_s) return;
   surfels_sent_ = stamp;
-  const auto cloud = toCloud(map, *T_map_start, surfels_max_points_);
+  const auto max_points = static_cast<std::size_t>(config_.surfels_max_points);
+  surfel_publisher_.publish(
+      sensor_msgs::PointCloud2::ConstPtr(cloud(map, stamp, T_map_start, max_points)));
+}
+
+sensor_msgs::PointCloud2::Ptr MapOutput::cloud(const pf::SurfelMap& map, const ros::Time& stamp,
+                                               const std::optional<Eigen::Isometry3d>& T_map_start,
+                                               std::size_t max_points) const {
+  if (!T_map_start) return nullptr;
+  auto cloud = toCloud(map, *T_map_start, max_points);
   cloud->header.stamp = stamp;
   cloud->header.frame_id = map_frame_;
-  surfel_publisher_.publish(sensor_msgs::PointCloud2::ConstPtr(cloud));
+  return cloud;
 }
 
 void MapOutput::publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset) {

@@ -73,8 +73,8 @@ std::string MapSaver::save(const MapToSave& map) {
   if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
   endSaveOnTheWay();
   const pf::RunFolder& target = folder();
-  pf::saveTrajectory(target.file(kTrajectory), trajectory, kPose);
-  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map());
+  pf::saveTrajectory(target.file(kTrajectory), pf::inWorld(T_map_start_, trajectory), kPose);
+  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map(), T_map_start_);
   const std::string continued = saveContinued(map);
   if (continued.empty() && (recording_ || !isOn())) saveDatabase(map);
   target.makeLatest();
@@ -146,6 +146,7 @@ std::string MapSaver::beginAnew(const MapToSave& map) {
 }
 
 void MapSaver::abandon() {
+  T_map_start_ = pf::bodyFromOptical();
   endSaveOnTheWay();
   journal_.reset();
   recording_.reset();
@@ -165,7 +166,8 @@ std::string MapSaver::note(const pf::StampedPose& pose, const MapToSave& map, bo
   } catch (const std::exception& error) {
     return error.what();
   }
-  if (!journal_->add(pose)) return folder().file(kPartial) + ": cannot be written (disk full?)";
+  if (!journal_->add({pose.stamp_ns, T_map_start_ * pose.T_world_camera}))
+    return folder().file(kPartial) + ": cannot be written (disk full?)";
   const auto period = std::chrono::duration<double>(settings_.period_s);
   if (settings_.period_s > 0 && Clock::now() - saved_ >= period) {
     const std::string failed = endSaveOnTheWay();
@@ -187,9 +189,9 @@ std::string MapSaver::record(const MapToSave& map, bool changed) {
 void MapSaver::saveOnTheWay(const pf::SurfelMap& map) {
   saved_ = Clock::now();
   // A copy takes some milliseconds, the disk may take a second.
-  saving_ = std::async(std::launch::async, [copy = map, target = folder()] {
+  saving_ = std::async(std::launch::async, [copy = map, target = folder(), T = T_map_start_] {
     try {
-      pf::saveMap(target.file(kMap), copy);
+      pf::saveMap(target.file(kMap), copy, T);
       target.makeLatest();
       return std::string();
     } catch (const std::exception& error) {

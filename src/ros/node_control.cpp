@@ -60,6 +60,7 @@ bool isNodeUp(const std::string& name) { return callNode(name, "getPid", ""); }
 
 void endNodes(const std::vector<std::string>& names, double patience_s) {
   for (const std::string& relative : names) {
+    if (relative.empty()) continue;
     const std::string name = ros::names::resolve(relative);
     if (!callNode(name, "shutdown", "no longer needed")) continue;
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);

@@ -126,7 +126,9 @@ pf::Config Parameters::config(const std::vector<std::string>& groups) {
 
 std::vector<std::string> Parameters::unknown() const {
   std::vector<std::string> names = values_.unread();
-  names.erase(std::remove(names.begin(), names.end(), kEndOnError), names.end());
+  for (const char* known : {kEndOnError, kDiagnosticPeriod}) {
+    names.erase(std::remove(names.begin(), names.end(), known), names.end());
+  }
   for (auto& name : names) name.insert(0, origin_ + "/");
   return names;
 }

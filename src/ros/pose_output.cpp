@@ -32,8 +32,8 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless) {
   settings.odom_frame = plainFrame(parameters.text("odom_frame", ""));
   settings.base_frame = plainFrame(parameters.text("base_frame", ""));
   settings.lookup = readLookup(parameters, lossless);
-  settings.path_period_s =
-      parameters.number("path_period_s", settings.path_period_s, {0.0, 3600.0});
+  ParameterFields fields(parameters);
+  visitFields(settings.publishing, fields);
   return settings;
 }
 
@@ -45,6 +45,7 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
   if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
     lookup_ = std::make_unique<ListeningLookup>(settings.lookup);
   }
+  if (settings.publish_tf) parents_ = std::make_unique<ListeningParentWatch>(handle);
   reset();
 }
 
@@ -83,7 +84,7 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   if (!look(image, links, note)) return false;
   const bool has_robot = !settings_.base_frame.empty() || !settings_.odom_frame.empty();
   if (!T_map_start_) {
-    const Eigen::Isometry3d T_body_camera = has_robot ? links.T_base_camera : bodyFromOptical();
+    const Eigen::Isometry3d T_body_camera = has_robot ? links.T_base_camera : pf::bodyFromOptical();
     T_map_start_ = is_loaded_ ? T_body_camera
                               : links.T_odom_base * T_body_camera * status.T_map_camera.inverse();
   }
@@ -91,8 +92,10 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   const Eigen::Isometry3d T_map_base = T_map_camera * links.T_base_camera.inverse();
   if (settings_.publish_tf) {
     const bool has_odometry = !settings_.odom_frame.empty();
-    sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
-                  has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+    const std::string unsent =
+        sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
+                      has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+    if (!unsent.empty()) note = unsent;
   }
   sendOdometry(image.stamp, links, T_map_base, status.tracking.covariance);
   geometry_msgs::PoseStamped pose;
@@ -118,13 +121,22 @@ void PoseOutput::correct(const pf::Trajectory& corrected) {
   path_sent_ = ros::Time();
 }
 
-void PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
-                               const Eigen::Isometry3d& T) {
+std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
+                                      const Eigen::Isometry3d& T) {
+  // Who came first goes on sending: two that hear each other would both fall silent.
+  const std::string conflict = sends_ ? "" : parents_->conflict(child, settings_.map_frame);
+  sends_ = conflict.empty();
+  if (!sends_) {
+    return "no transform is sent: " + conflict +
+           "; give base_frame (the frame above it that has no parent), another camera frame, or "
+           "publish_tf:=false";
+  }
   geometry_msgs::TransformStamped message = tf2::eigenToTransform(T);
   message.header.stamp = stamp;
   message.header.frame_id = settings_.map_frame;
   message.child_frame_id = child;
   broadcaster_.sendTransform(message);
+  return {};
 }
 
 void PoseOutput::sendOdometry(const ros::Time& stamp, const Links& links,
@@ -156,7 +168,8 @@ void PoseOutput::extendPath(const geometry_msgs::PoseStamped& pose,
     path_.poses.push_back(pose);
     path_mounts_.push_back(T_base_camera);
   }
-  if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.path_period_s) return;
+  if (!path_sent_.isZero() && (stamp - path_sent_).toSec() < settings_.publishing.path_period_s)
+    return;
   path_.header.stamp = stamp;
   path_sent_ = stamp;
   if (path_publisher_.getNumSubscribers() > 0) path_publisher_.publish(path_);

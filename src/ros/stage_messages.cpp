@@ -102,6 +102,30 @@ TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Heade
   return message;
 }
 
+pf::FrameStatus fromMessage(const TrackingStatusMsg& message) {
+  pf::FrameStatus status;
+  status.stamp_ns = toNs(message.header.stamp);
+  status.outcome = static_cast<pf::FrameOutcome>(message.outcome);
+  status.state = static_cast<pf::TrackingState>(message.state);
+  status.located = message.located != 0;
+  status.surfels = message.surfels;
+  status.tracking_ms = message.tracking_ms;
+  status.fusion_ms = message.fusion_ms;
+  const geometry_msgs::Pose& pose = message.pose;
+  const auto& q = pose.orientation;
+  status.T_map_camera.linear() =
+      Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  status.T_map_camera.translation() << pose.position.x, pose.position.y, pose.position.z;
+  return status;
+}
+
+std::string outcomeName(std::uint8_t outcome) {
+  if (outcome == TrackingStatusMsg::DROPPED) return "dropped";
+  if (outcome == TrackingStatusMsg::NO_DETECTOR) return "no_detector";
+  if (outcome == TrackingStatusMsg::PAUSED) return "paused";
+  return std::string(pf::name(static_cast<pf::FrameOutcome>(outcome)));
+}
+
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q(T.linear());
   geometry_msgs::Pose pose;

@@ -10,13 +10,9 @@
 namespace posefusion_ros {
 namespace {
 
-struct Point {
-  float x, y, z, rgb, nx, ny, nz, radius, confidence;
-};
-
 constexpr const char* kFields[] = {"x",        "y",        "z",      "rgb",       "normal_x",
                                    "normal_y", "normal_z", "radius", "confidence"};
-static_assert(sizeof(Point) == sizeof(kFields) / sizeof(kFields[0]) * sizeof(float));
+static_assert(sizeof(SurfelPoint) == sizeof(kFields) / sizeof(kFields[0]) * sizeof(float));
 
 float packed(float r, float g, float b) {
   const auto byte = [](float value) {
@@ -37,12 +33,22 @@ void describe(sensor_msgs::PointCloud2& cloud) {
     field.count = 1;
     cloud.fields.push_back(field);
   }
-  cloud.point_step = sizeof(Point);
+  cloud.point_step = sizeof(SurfelPoint);
   cloud.height = 1;
   cloud.is_dense = 1;
 }
 
 }  // namespace
+
+const SurfelPoint* surfelsOf(const sensor_msgs::PointCloud2& cloud) {
+  sensor_msgs::PointCloud2 ours;
+  describe(ours);
+  const bool same = cloud.fields == ours.fields && cloud.point_step == ours.point_step &&
+                    cloud.height == 1 && !cloud.is_bigendian &&
+                    cloud.data.size() == std::size_t{cloud.width} * cloud.point_step;
+  // The payload of a message is aligned for floats: it is an allocation of its own.
+  return same ? reinterpret_cast<const SurfelPoint*>(cloud.data.data()) : nullptr;
+}
 
 sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                                       const Eigen::Isometry3d& T_map_start,
@@ -53,18 +59,18 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
   auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
   describe(*cloud);
   if (stable == 0) return cloud;
-  cloud->data.resize((stable + step - 1) / step * sizeof(Point));
+  cloud->data.resize((stable + step - 1) / step * sizeof(SurfelPoint));
   std::size_t seen = 0, count = 0;
   map.forEachSurfel([&](const pf::SurfelArrays& s, std::size_t i) {
     if (!map.isStable(s, i) || seen++ % step != 0 || pf::fragmentAt(s.x[i]) != 0) return;
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
-    const Point point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
-                      n.x(),          n.y(), n.z(), s.radius[i],
-                      s.confidence[i]};
-    std::memcpy(&cloud->data[count++ * sizeof(Point)], &point, sizeof(Point));
+    const SurfelPoint point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
+                            n.x(),          n.y(), n.z(), s.radius[i],
+                            s.confidence[i]};
+    std::memcpy(&cloud->data[count++ * sizeof(SurfelPoint)], &point, sizeof(SurfelPoint));
   });
-  cloud->data.resize(count * sizeof(Point));  // without those of other fragments
+  cloud->data.resize(count * sizeof(SurfelPoint));  // without those of other fragments
   cloud->width = static_cast<std::uint32_t>(count);
   cloud->row_step = cloud->width * cloud->point_step;
   return cloud;

@@ -19,12 +19,6 @@ std::string plainFrame(const std::string& frame_id) {
   return !frame_id.empty() && frame_id.front() == '/' ? frame_id.substr(1) : frame_id;
 }
 
-Eigen::Isometry3d bodyFromOptical() {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return T;
-}
-
 pf::Matrix6d poseCovariance(const Eigen::Isometry3d& T_parent_body,
                             const Eigen::Isometry3d& T_body_camera, const pf::Matrix6d& camera) {
   // The body's motion in its own axes, then turned into the axes of the parent.

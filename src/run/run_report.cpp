@@ -36,6 +36,7 @@ ordered_json framesJson(const FrameCounts& f) {
           {"blurred", f.blurred},
           {"tracked", f.tracked},
           {"lost", f.lost},
+          {"left_out", f.left_out},
           {"pose_share", f.poseShare()},
           {"pose_share_of_sharp", f.sharpPoseShare()},
           {"by_state", f.by_state},
@@ -88,6 +89,11 @@ void RunReport::setBackEnd(const BackEnd& back_end, const LoopCounts& loops) {
   corrections_ = back_end.counts();
 }
 
+void RunReport::setCorrected(const Trajectory& trajectory) {
+  live_ = std::exchange(trajectory_, trajectory);
+  ran_elsewhere_ = true;
+}
+
 double RunReport::framesPerSecond() const {
   return seconds_ > 0 ? static_cast<double>(statistics_.frames().read) / seconds_ : 0.0;
 }
@@ -111,9 +117,9 @@ std::string RunReport::summary(std::size_t surfels) const {
   out["frames"] = framesJson(statistics_.frames());
   out["masks"] = {{"frames", masks.with_mask}, {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
-  out["loops"] = loopsJson(loops_, corrections_);
+  if (!ran_elsewhere_) out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();
-  out["peak_memory_mb"] = peakMemoryMb();
+  if (!ran_elsewhere_) out["peak_memory_mb"] = peakMemoryMb();
   if (const auto e = errors()) {
     out["ate_rmse_m"] = e->ate_m.rmse;
     out["ate_held_rmse_m"] = e->held_m.rmse;
@@ -132,14 +138,20 @@ std::string RunReport::summary(std::size_t surfels) const {
 }
 
 void RunReport::write(const std::string& folder, const SurfelMap& map) const {
-  saveTrajectory(folder + "/trajectory.txt", trajectory_,
-                 "pose of the camera (optical frame: z forward, x right, y down) in the map");
+  const Eigen::Isometry3d T_file_map = bodyFromOptical();
+  saveTrajectory(
+      folder + "/trajectory.txt", inWorld(T_file_map, trajectory_),
+      "pose of the camera (optical frame: z forward, x right, y down) in the map (z up)");
   if (!live_.empty()) {
-    saveTrajectory(folder + "/trajectory_live.txt", live_,
-                   "pose of the camera (optical frame: z forward, x right, y down) in the map, as "
-                   "told when the frame came: loops found later do not correct it");
+    saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_file_map, live_),
+                   "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
+                   "up), as told when the frame came: loops found later do not correct it");
   }
-  const std::size_t surfels = saveMap(folder + "/map.ply", map);
+  writeSummary(folder, map, saveMap(folder + "/map.ply", map, T_file_map));
+}
+
+void RunReport::writeSummary(const std::string& folder, const SurfelMap& map,
+                             std::size_t surfels) const {
   AtomicFile file(folder + "/summary.json");
   file.stream() << summary(surfels);
   file.commit();
@@ -153,7 +165,9 @@ std::string RunReport::table() const {
   const FrameCounts& f = statistics_.frames();
   std::ostringstream out;
   out << "frames   " << f.read << " read, " << f.tracked << " tracked, " << f.lost << " lost, "
-      << f.blurred << " blurred, " << f.bad << " bad\n";
+      << f.blurred << " blurred, " << f.bad << " bad";
+  if (f.left_out > 0) out << ", " << f.left_out << " left out";
+  out << "\n";
   out << "poses    " << fixed(100 * f.poseShare(), 2) << " % of the frames, "
       << fixed(100 * f.sharpPoseShare(), 2) << " % of those not blurred\n";
   out << "speed    " << fixed(framesPerSecond(), 1) << " frames per second\n";

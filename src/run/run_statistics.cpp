@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pf {
 namespace {
@@ -34,7 +35,7 @@ void RunStatistics::add(const ProcessedFrame& frame) {
       return;
     case FrameOutcome::blurred:
       ++frames_.blurred;
-      times_ms_["gate"].push_back(frame.seen.gate_ms);
+      addTime("gate", frame.seen.gate_ms);
       return;
     case FrameOutcome::fused:
       ++frames_.tracked;
@@ -44,6 +45,12 @@ void RunStatistics::add(const ProcessedFrame& frame) {
   }
   addMask(frame);
   addTimes(frame);
+}
+
+void RunStatistics::addLeftOut(const std::string& outcome) {
+  ++frames_.read;
+  ++frames_.left_out;
+  ++frames_.by_outcome[outcome];
 }
 
 void RunStatistics::addMask(const ProcessedFrame& frame) {
@@ -56,12 +63,16 @@ void RunStatistics::addMask(const ProcessedFrame& frame) {
 }
 
 void RunStatistics::addTimes(const ProcessedFrame& frame) {
-  times_ms_["gate"].push_back(frame.seen.gate_ms);
-  if (frame.seen.people.detected) times_ms_["pose"].push_back(frame.seen.pose_ms);
-  times_ms_["segmentation"].push_back(frame.segmentation_ms);
-  times_ms_["tracking"].push_back(frame.status.tracking_ms);
-  times_ms_["fusion"].push_back(frame.status.fusion_ms);
-  times_ms_["tracking_and_fusion"].push_back(frame.status.tracking_ms + frame.status.fusion_ms);
+  addTime("gate", frame.seen.gate_ms);
+  if (frame.seen.people.detected) addTime("pose", frame.seen.pose_ms);
+  addTime("segmentation", frame.segmentation_ms);
+  addTime("tracking", frame.status.tracking_ms);
+  addTime("fusion", frame.status.fusion_ms);
+  addTime("tracking_and_fusion", frame.status.tracking_ms + frame.status.fusion_ms);
+}
+
+void RunStatistics::addTime(const char* stage, double ms) {
+  if (!std::isnan(ms)) times_ms_[stage].push_back(ms);
 }
 
 MaskCounts RunStatistics::masks() const {

@@ -177,6 +177,11 @@ ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T
 
 const SurfelMap& Mapper::map() const { return state_->map; }
 
+void Mapper::set(const TrackingConfig& tracking) {
+  state_->config.tracking = tracking;
+  state_->localiser.set(tracking);
+}
+
 std::size_t Mapper::add(const SurfelArrays& surfels) { return state_->map.add(surfels); }
 
 void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {

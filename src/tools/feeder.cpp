@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_feeder: plays a recording into the chain, frame by frame as it is done with them
-// (lossless) or in real time, and ends when the last frame has been reported. Tells what became of
-// the frames and, in real time, how long their transforms took.
+// posefusion_feeder: plays a recording into the chain, lossless or in real time, and ends when the
+// last frame has been reported. Tells what became of the frames, and how long transforms took.
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 #include <tf2_msgs/TFMessage.h>
@@ -13,6 +12,7 @@
 #include <memory>
 #include <thread>
 
+#include "chain_presence.hpp"
 #include "feeder_settings.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion_ros/conversions.hpp"
@@ -23,6 +23,7 @@
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transform_replay.hpp"
 #include "posefusion_ros/transforms.hpp"
+#include "replay_report.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -34,14 +35,16 @@ using std::chrono::steady_clock;
 // In real time the chain may lose a frame without a word; silence then ends the replay.
 constexpr double kQuiet_s = 5.0;
 constexpr int kQueue = 100;
-constexpr std::chrono::seconds kChainPatience(15);  // until its process is there
-constexpr double kEndPatience_s = 60;               // a large map takes its time to be saved
-constexpr std::chrono::seconds kStayPatience(10);   // until rviz is there
+constexpr double kEndPatience_s = 60;              // a large map takes its time to be saved
+constexpr std::chrono::seconds kStayPatience(10);  // until rviz is there
 
 class Feeder {
  public:
   Feeder(const std::string& input, const FeederSettings& settings)
-      : settings_(settings), source_(openInput(input, settings.input)), spinner_(1) {
+      : settings_(settings),
+        chain_(settings.manager),
+        source_(openInput(input, settings.input)),
+        spinner_(1) {
     if (settings_.frame_id.empty()) {
       settings_.frame_id = plainFrame(recordedFrameId(input, settings.input.topics));
     }
@@ -54,6 +57,10 @@ class Feeder {
     status_ = handle_.subscribe(topics::kStatus, 1000, &Feeder::onStatus, this);
     if (!settings.lossless && !settings.tf) {
       tf_ = handle_.subscribe("/tf", 1000, &Feeder::onTransforms, this);
+    }
+    if (!settings.output.empty()) {
+      report_ = std::make_unique<ReplayReport>(handle_, settings.config, settings.output,
+                                               source_->truth());
     }
     spinner_.start();
   }
@@ -88,6 +95,11 @@ class Feeder {
     if (!waitBelow(1, patience_s) && settings_.lossless) fail();
   }
 
+  /// Once fusion has saved. Throws InputError where it has not.
+  void writeReport() {
+    if (report_) ROS_INFO("%s", report_->write().c_str());
+  }
+
   std::string summary() const {
     std::ostringstream text;
     text << sent_ << " frames sent";
@@ -103,7 +115,7 @@ class Feeder {
   }
 
  private:
-  void waitForChain() const {
+  void waitForChain() {
     const auto end = steady_clock::now() + duration<double>(settings_.timeout_s);
     while (ros::ok()) {
       std::string missing;
@@ -123,25 +135,14 @@ class Feeder {
 
   /// False when nothing was reported for so long; Ctrl-C ends the wait.
   bool waitBelow(std::size_t limit, double patience_s) {
-    const auto alive = [this] { return ros::ok() && chainIsUp(); };
+    const auto alive = [this] { return ros::ok() && chain_.isUp(); };
     const bool below = window_.waitBelow(limit, duration<double>(patience_s), alive);
     requireChain();
     return below || !ros::ok();
   }
 
-  /// Whether the process of the chain, ~manager, runs; it is looked for now and then.
-  bool chainIsUp() const {
-    const auto now = steady_clock::now();
-    if (settings_.manager.empty() || now < look_again_) return chain_is_up_;
-    look_again_ = now + std::chrono::milliseconds(500);
-    const bool is_up = isNodeUp(ros::names::resolve(settings_.manager));
-    chain_was_up_ = chain_was_up_ || is_up;
-    chain_is_up_ = is_up || (!chain_was_up_ && now < begin_ + kChainPatience);
-    return chain_is_up_;
-  }
-
-  void requireChain() const {
-    if (ros::ok() && !chainIsUp()) throw InputError("the chain has ended: " + summary());
+  void requireChain() {
+    if (ros::ok() && !chain_.isUp()) throw InputError("the chain has ended: " + summary());
   }
 
   void send(const pf::RgbdFrame& frame) {
@@ -155,6 +156,7 @@ class Feeder {
     latency_.sent(frame.stamp_ns, steady_clock::now());
     window_.sent(frame.stamp_ns);
     ++sent_;
+    if (report_) report_->sent(frame);
     info_.publish(toCameraInfo(frame.camera, header));
     depth_.publish(toDepthImage(frame, header));
     color_.publish(toImage(frame.color, "rgb8", header));
@@ -169,6 +171,7 @@ class Feeder {
       const std::lock_guard<std::mutex> lock(outcome_mutex_);
       ++outcomes_[name];
     }
+    if (report_) report_->reported(*status);
     if (!window_.reported(toNs(status->header.stamp))) {
       ROS_WARN("a status for stamp %u.%09u, of which no frame is under way",
                status->header.stamp.sec, status->header.stamp.nsec);
@@ -187,13 +190,11 @@ class Feeder {
   }
 
   FeederSettings settings_;
-  steady_clock::time_point begin_ = steady_clock::now();
-  mutable steady_clock::time_point look_again_ = begin_;
-  mutable bool chain_was_up_ = false;
-  mutable bool chain_is_up_ = true;
+  ChainPresence chain_;
   std::unique_ptr<pf::FrameSource> source_;
   ros::NodeHandle handle_;
   std::unique_ptr<TransformReplay> transforms_;
+  std::unique_ptr<ReplayReport> report_;
   CreditWindow window_;
   LatencyMeter latency_;
   int sent_ = 0;
@@ -207,8 +208,9 @@ class Feeder {
 
 /// After the last frame. Not by `required` in the launch file: roslaunch calls a normal end an
 /// error then.
-void endLaunch(const FeederSettings& settings) {
-  if (!settings.ends.empty()) endNodes({settings.ends}, kEndPatience_s);
+void endLaunch(const FeederSettings& settings, Feeder& feeder) {
+  endNodes({settings.ends, settings.manager}, kEndPatience_s);
+  feeder.writeReport();
   if (!settings.stays.empty()) {
     const auto end = steady_clock::now() + kStayPatience;
     const auto look = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
@@ -226,7 +228,7 @@ int feed(const std::string& input) {
     Feeder feeder(input, settings);
     feeder.run();
     ROS_INFO("%s", feeder.summary().c_str());
-    if (ros::ok()) endLaunch(settings);
+    if (ros::ok()) endLaunch(settings, feeder);
     code = 0;
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());
@@ -241,8 +243,7 @@ int feed(const std::string& input) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "posefusion_feeder");
   if (argc != 2) {
-    std::cerr << "usage: posefusion_feeder BAG_OR_TUM_FOLDER [_lossless:=true] [_window:=2] "
-                 "[_rate:=1.0]\n";
+    std::cerr << "usage: posefusion_feeder BAG_OR_TUM_FOLDER [_lossless:=true] [_rate:=1.0]\n";
     return 2;
   }
   const ros::NodeHandle alive;  // ROS, and with it the log, ends with the last handle

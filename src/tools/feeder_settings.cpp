@@ -3,6 +3,7 @@
 
 #include <ros/console.h>
 
+#include "posefusion/core/error.hpp"
 #include "posefusion_ros/parameters.hpp"
 
 namespace posefusion_ros {
@@ -24,6 +25,12 @@ FeederSettings readFeederSettings() {
   s.manager = parameters.text("manager", "");
   s.ends = parameters.text("ends", "");
   s.stays = parameters.text("stays", "");
+  s.output = parameters.text("output", "");
+  try {
+    s.config = parameters.config({});
+  } catch (const pf::InputError&) {
+    // They are those of the chain, which does not start with them and says why.
+  }
   for (const std::string& name : parameters.unknown()) {
     ROS_WARN("unknown parameter %s: it has no effect", name.c_str());
   }

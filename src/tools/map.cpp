@@ -100,9 +100,10 @@ void exportAll(const std::string& file, const std::string& folder) {
   const MapReader reader(file);
   const MapContent content = reader.content();
   makeFolder(folder);
-  const std::size_t stable = saveMap(folder + "/map.ply", mapOf(reader, content, file));
-  const Trajectory trajectory = trajectoryOf(content);
-  saveTrajectory(folder + "/trajectory.txt", trajectory, "poses of the camera in the map");
+  const std::size_t stable =
+      saveMap(folder + "/map.ply", mapOf(reader, content, file), bodyFromOptical());
+  const Trajectory trajectory = inWorld(bodyFromOptical(), trajectoryOf(content));
+  saveTrajectory(folder + "/trajectory.txt", trajectory, "poses of the camera in the map (z up)");
   exportKeyframes(reader, content, folder + "/keyframes");
   if (!trajectory.empty()) {
     Plan plan;

@@ -83,7 +83,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
       report.add(frame);
       observers.add(frame);
       if (frame.status.located &&
-          !journal.add({frame.status.stamp_ns, frame.status.T_map_camera}) &&
+          !journal.add({frame.status.stamp_ns, bodyFromOptical() * frame.status.T_map_camera}) &&
           !std::exchange(disk_full, true)) {
         progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
       }

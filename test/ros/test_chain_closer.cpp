@@ -100,8 +100,9 @@ TEST(ChainCloser, LoopsCloseAsInTheOfflineChainToTheBit) {
   chain.unload();
   const pf::BackEnd& back_end = pipeline.mapper().backEnd();
   ASSERT_GT(back_end.graph().version(), 0) << "the test needs loops that close";
-  pf::saveTrajectory(folder / "expected.txt", back_end.trajectory(), "");
-  pf::saveMap(folder / "expected.ply", pipeline.mapper().map());
+  pf::saveTrajectory(folder / "expected.txt",
+                     pf::inWorld(pf::bodyFromOptical(), back_end.trajectory()), "");
+  pf::saveMap(folder / "expected.ply", pipeline.mapper().map(), pf::bodyFromOptical());
   EXPECT_EQ(posesIn(folder / "latest/trajectory.txt"), posesIn(folder / "expected.txt"));
   EXPECT_EQ(pf::readFile(folder / "latest/map.ply"), pf::readFile(folder / "expected.ply"));
 }
@@ -137,7 +138,7 @@ TEST(ChainCloser, ThePathFollowsCorrections) {
     }));
     std::map<ros::Time, Eigen::Isometry3d> camera;
     for (const auto& pose : back_end.trajectory()) {
-      camera[toTime(pose.stamp_ns)] = bodyFromOptical() * pose.T_world_camera;
+      camera[toTime(pose.stamp_ns)] = pf::bodyFromOptical() * pose.T_world_camera;
     }
     const std::lock_guard<std::mutex> lock(mutex);
     ++checked;

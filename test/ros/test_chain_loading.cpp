@@ -110,8 +110,8 @@ TEST_F(ChainLoading, AMapGoesOnAsInTheOfflineChainToTheBit) {
   chain->unload();
   const pf::Trajectory trajectory = pipeline.mapper().backEnd().trajectory();
   ASSERT_GT(trajectory.size(), 5U);
-  pf::saveTrajectory(folder / "expected.txt", trajectory, "");
-  pf::saveMap(folder / "expected.ply", pipeline.mapper().map());
+  pf::saveTrajectory(folder / "expected.txt", pf::inWorld(pf::bodyFromOptical(), trajectory), "");
+  pf::saveMap(folder / "expected.ply", pipeline.mapper().map(), pf::bodyFromOptical());
   EXPECT_EQ(posesIn(folder / "out/latest/trajectory.txt"), posesIn(folder / "expected.txt"));
   EXPECT_EQ(pf::readFile(folder / "out/latest/map.ply"), pf::readFile(folder / "expected.ply"));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What becomes of a map: saved, emptied, begun anew.
 #include <gtest/gtest.h>
+#include <posefusion/GetMap.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,7 +11,9 @@
 
 #include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
+#include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
+#include "posefusion_ros/surfel_cloud.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -123,6 +126,32 @@ TEST_F(ChainSaving, OnRequestOnlyNothingIsWrittenUnasked) {
   std::filesystem::current_path(here);
   ASSERT_EQ(runs("posefusion_output").size(), 2U);
   EXPECT_EQ(posesOf(runs("posefusion_output")[0] + "/trajectory.txt"), 1U);
+}
+
+TEST_F(ChainSaving, FilesLieInTheMapFrameOfTf) {
+  load("overlay", folder / "out");
+  std::vector<TrackingStatusMsg> told;
+  for (int i = 0; i < 12; ++i) told.push_back(process(i));
+  posefusion::GetMap query;
+  ASSERT_TRUE(ros::service::call(chain->space() + "/fusion/get_map", query));
+  chain->unload();
+  const pf::Trajectory poses = pf::loadTrajectory(folder / "out/latest/trajectory.txt");
+  ASSERT_EQ(poses.size(), told.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto& saved = poses[i].T_world_camera.translation();
+    EXPECT_NEAR(saved.x(), told[i].pose.position.x, 1e-6) << i;
+    EXPECT_NEAR(saved.y(), told[i].pose.position.y, 1e-6) << i;
+    EXPECT_NEAR(saved.z(), told[i].pose.position.z, 1e-6) << i;
+  }
+  const pf::SurfelArrays map = pf::loadMap(folder / "out/latest/map.ply");
+  const SurfelPoint* shown = surfelsOf(query.response.cloud);
+  ASSERT_NE(shown, nullptr);
+  ASSERT_EQ(map.size(), query.response.cloud.width);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    ASSERT_NEAR(map.x[i], shown[i].x, 1e-5F);
+    ASSERT_NEAR(map.z[i], shown[i].z, 1e-5F);
+    ASSERT_NEAR(map.nz[i], shown[i].normal_z, 1e-5F);
+  }
 }
 
 TEST_F(ChainSaving, AnOutputThatCannotBeWrittenEndsTheStart) {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """replay.launch as a user starts it, against the offline runner."""
+import json
 import os
 import pathlib
 import shutil
@@ -72,6 +73,23 @@ class Replay(unittest.TestCase):
         self.assertEqual(poses(self.folder + "/ros_run/latest/trajectory.txt"), offline)
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/map.ply").read_bytes(),
                          pathlib.Path(self.folder, "offline/map.ply").read_bytes())
+        self.check_summaries(text)
+
+    def check_summaries(self, text):
+        """What the replay tells beside the offline run is the same, as far as it is told."""
+        replayed, offline = (json.loads(pathlib.Path(self.folder, run, "summary.json").read_text())
+                             for run in ("ros_run/latest", "offline"))
+        for key in ("version", "frames", "masks", "surfels", "configuration"):
+            self.assertEqual(replayed[key], offline[key], key)
+        for key in ("ate_rmse_m", "ate_held_rmse_m"):
+            self.assertAlmostEqual(replayed[key], offline[key], places=6, msg=key)
+        self.assertNotIn("loops", replayed)
+        self.assertIn("tracking", replayed["stages"])
+        self.assertGreater(pathlib.Path(self.folder, "ros_run/latest/map.png").stat().st_size, 10000)
+        self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/people.png").read_bytes(),
+                         pathlib.Path(self.folder, "offline/people.png").read_bytes())
+        self.assertIn("ATE ", text)
+        self.assertRegex(text, r"results +" + self.folder + "/ros_run/")
 
     def test_real_time_replay_ends_by_itself(self):
         text = self.replay("bag:=" + self.folder + "/sequence", "detector:=none",

@@ -28,6 +28,9 @@ class BlurGate {
   BlurScore judge(const Sharpness& sharpness);
   void reset();
 
+  /// From the next frame on; what is known of the recent frames stays.
+  void set(const BlurConfig& config) { config_ = config; }
+
  private:
   double threshold() const;
 

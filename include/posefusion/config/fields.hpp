@@ -22,6 +22,9 @@ class FieldVisitor {
   virtual void enter(const std::string& group) = 0;
   virtual void leave() = 0;
 
+  /// The rest of the group is read at the start alone: it cannot change while the chain runs.
+  virtual void atStart() {}
+
   virtual void flag(const char* name, bool& value, const char* help) = 0;
   virtual void number(const char* name, double& value, double min, double max,
                       const char* help) = 0;

@@ -8,9 +8,10 @@
 namespace pf {
 
 /// Writes the stable surfels, in the order in which they were made, as binary little-endian PLY:
-/// float x y z nx ny nz (map frame, metres), uchar red green blue, float radius confidence. Returns
-/// their number. Throws InputError naming the file.
-std::size_t saveMap(const std::string& path, const SurfelMap& map);
+/// float x y z nx ny nz (metres, moved by `T_file_map`), uchar red green blue, float radius
+/// confidence. Returns their number. Throws InputError naming the file.
+std::size_t saveMap(const std::string& path, const SurfelMap& map,
+                    const Eigen::Isometry3d& T_file_map = Eigen::Isometry3d::Identity());
 
 /// Reads what saveMap() writes; weights are the confidences. Throws InputError naming the file.
 SurfelArrays loadMap(const std::string& path);

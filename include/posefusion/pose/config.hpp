@@ -20,6 +20,13 @@ struct PoseConfig {
 };
 
 inline void visitFields(PoseConfig& c, FieldVisitor& v) {
+  v.integer("every_nth_frame", c.every_nth_frame, 1, 1000,
+            "the network sees every n-th sharp frame; joints are carried between");
+  v.number("min_peak", c.min_peak, 0.0, 1.0, "smallest heat-map value of a joint");
+  v.number("min_person_score", c.min_person_score, 0.0, 1.0, "smallest mean score of a person");
+  v.integer("min_person_joints", c.min_person_joints, 1, 18, "fewest joints of a person");
+  v.integer("max_people", c.max_people, 1, 15, "people kept per frame, best first");
+  v.atStart();
   v.choice("detector", c.detector, {"network", "recorded", "none"},
            "where people come from: a pose network, People recorded with the input, or nowhere");
   v.text("model", c.model,
@@ -27,12 +34,6 @@ inline void visitFields(PoseConfig& c, FieldVisitor& v) {
          ".yaml of the same name beside it or in config/models; empty = from scripts/get_models");
   v.integer("input_height_px", c.input_height_px, 0, 4096,
             "height of the network's input, the width follows; 0 = as the model's settings say");
-  v.integer("every_nth_frame", c.every_nth_frame, 1, 1000,
-            "the network sees every n-th sharp frame; joints are carried between");
-  v.number("min_peak", c.min_peak, 0.0, 1.0, "smallest heat-map value of a joint");
-  v.number("min_person_score", c.min_person_score, 0.0, 1.0, "smallest mean score of a person");
-  v.integer("min_person_joints", c.min_person_joints, 1, 18, "fewest joints of a person");
-  v.integer("max_people", c.max_people, 1, 15, "people kept per frame, best first");
 }
 
 }  // namespace pf

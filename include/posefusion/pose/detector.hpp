@@ -17,6 +17,8 @@ class PoseDetector {
   virtual ~PoseDetector() = default;
   /// The people in the frame. `detected` is false on frames that the source has nothing to say of.
   virtual People detect(const RgbdFrame& frame) = 0;
+  /// From the next frame on; the detector, its model and the size of its input stay.
+  virtual void set(const PoseConfig& /*config*/) {}
 };
 
 /// People recorded with the input, by stamp (ns).

@@ -33,6 +33,8 @@ class RunReport {
   /// frame.
   void add(const ProcessedFrame& frame);
 
+  void addLeftOut(const std::string& outcome) { statistics_.addLeftOut(outcome); }
+
   void setTruth(const Trajectory& truth) { truth_ = truth; }
 
   /// Reported as `depth_median_difference_m`.
@@ -40,6 +42,9 @@ class RunReport {
 
   /// The corrected trajectory, and what was done to loops, once all frames were added.
   void setBackEnd(const BackEnd& back_end, const LoopCounts& loops);
+
+  /// In place of setBackEnd(), where the chain ran in another process.
+  void setCorrected(const Trajectory& trajectory);
 
   const RunStatistics& statistics() const { return statistics_; }
   /// The frames that have a pose of their own, as they were told at the time; as corrected by loops
@@ -53,6 +58,10 @@ class RunReport {
   /// trajectory_live.txt (as they were told at the time), map.ply, summary.json, map.png and
   /// people.png. Throws InputError naming the file.
   void write(const std::string& folder, const SurfelMap& map) const;
+
+  /// Of these, summary.json and the pictures. `map` lies in the frame of the trajectory; `surfels`
+  /// are in map.ply.
+  void writeSummary(const std::string& folder, const SurfelMap& map, std::size_t surfels) const;
 
   /// A few lines for people.
   std::string table() const;
@@ -68,6 +77,7 @@ class RunReport {
   Trajectory truth_;
   LoopCounts loops_;
   BackEnd::Counts corrections_;
+  bool ran_elsewhere_ = false;  ///< loops and memory are not known
   PeopleStrip strip_;
   PinholeCamera camera_;
   std::optional<double> depth_difference_m_;

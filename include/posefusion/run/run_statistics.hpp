@@ -11,12 +11,13 @@ namespace pf {
 
 /// Frames of a run. Each is counted once besides `read`.
 struct FrameCounts {
-  std::size_t read = 0;     ///< all frames that the input gave
-  std::size_t bad = 0;      ///< unreadable, of another size, stamps going back
-  std::size_t blurred = 0;  ///< dropped by the gate
-  std::size_t tracked = 0;  ///< tracked and fused
-  std::size_t lost = 0;     ///< offered to tracking and not fused
-  std::size_t posed = 0;    ///< located: tracked, or doubtful with a pose of their own
+  std::size_t read = 0;      ///< all frames that the input gave
+  std::size_t bad = 0;       ///< unreadable, of another size, stamps going back
+  std::size_t blurred = 0;   ///< dropped by the gate
+  std::size_t tracked = 0;   ///< tracked and fused
+  std::size_t lost = 0;      ///< offered to tracking and not fused
+  std::size_t left_out = 0;  ///< nobody looked at them: live, the chain fell behind
+  std::size_t posed = 0;     ///< located: tracked, or doubtful with a pose of their own
   std::map<std::string, std::size_t> by_state, by_outcome;  ///< of all that were read, by name
 
   double poseShare() const;       ///< posed / read; 0 of none
@@ -39,7 +40,11 @@ struct StageTime {
 /// Counts and times of a run, frame by frame.
 class RunStatistics {
  public:
+  /// Times that are NaN are not known.
   void add(const ProcessedFrame& frame);
+
+  /// A frame that no stage looked at; `outcome` says why, as one word.
+  void addLeftOut(const std::string& outcome);
 
   const FrameCounts& frames() const { return frames_; }
   MaskCounts masks() const;
@@ -51,6 +56,7 @@ class RunStatistics {
  private:
   void addMask(const ProcessedFrame& frame);
   void addTimes(const ProcessedFrame& frame);
+  void addTime(const char* stage, double ms);
 
   FrameCounts frames_;
   MaskCounts masks_;

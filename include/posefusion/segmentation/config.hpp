@@ -29,7 +29,6 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
            "energy paper: length scale of the smoothness cost");
   v.number("paper_radius_m", c.paper_radius_m, 1e-3, 10.0,
            "energy paper: length scale of the background penalty");
-  v.integer("grid_width", c.grid_width, 16, 640, "columns of the grid that is cut");
   v.number("sigma_m", c.sigma_m, 1e-3, 10.0, "length scale of the smoothness cost");
   v.number("smoothness", c.smoothness, 0.0, 1e3, "weight of the smoothness cost");
   v.number("color_weight", c.color_weight, 0.0, 1e3, "weight of the colour likelihood");
@@ -39,6 +38,8 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
             "people are carried forward so many frames after they were last detected");
   v.integer("margin_px", c.margin_px, 0, 50,
             "rim around the mask that is removed from the depth too, at 640 pixels width");
+  v.atStart();
+  v.integer("grid_width", c.grid_width, 16, 640, "columns of the grid that is cut");
 }
 
 }  // namespace pf

@@ -44,6 +44,9 @@ class PeopleSegmenter {
                        const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);
   void reset();
 
+  /// From the next frame on; people carried forward stay.
+  void set(const SegmentationConfig& config) { config_ = config; }
+
  private:
   struct State;
   Segmentation segmentAsThePaper(const RgbdFrame& frame, const People& people,

@@ -74,6 +74,9 @@ class Localiser {
   /// once some frames in a row agree.
   void suggest(const Eigen::Isometry3d& T_map_camera, const Eigen::Isometry3d& T_reckoned);
 
+  /// From the next frame on; what is known stays.
+  void set(const TrackingConfig& config) { config_ = config; }
+
   void reset() { *this = Localiser(config_); }
 
  private:

@@ -84,6 +84,9 @@ class Mapper {
 
   const SurfelMap& map() const;
 
+  /// From the next frame on. The loop closer keeps what it began with.
+  void set(const TrackingConfig& tracking);
+
   /// Puts known surfels (map frame) into the map, as far as its memory lasts; tells how many. They
   /// count like fused ones, but do not tell where the camera is: before the first frame the map
   /// still starts at its pose.

@@ -14,8 +14,6 @@ struct TrackingConfig {
   int max_iterations = 12;
   double min_valid_fraction = 0.03;
   double min_inlier_fraction = 0.4;
-  double max_translation_m = 0.30;
-  double max_rotation_rad = 0.60;
   int lost_after_frames = 10;
 };
 
@@ -32,10 +30,6 @@ inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
            "least part of the image that must have depth and model");
   v.number("min_inlier_fraction", c.min_inlier_fraction, 0.0, 1.0,
            "least part of those that must agree");
-  v.number("max_translation_m", c.max_translation_m, 0.0, 100.0,
-           "a longer step between two frames is not believed");
-  v.number("max_rotation_rad", c.max_rotation_rad, 0.0, 3.15,
-           "a larger turn between two frames is not believed");
   v.integer("lost_after_frames", c.lost_after_frames, 1, 1000,
             "untrusted frames in a row until tracking counts as lost");
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion_ros/mapping_watch.hpp"
+
+#include <numeric>
+#include <string>
+
+#include "posefusion/map/surfel_map.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using pf::TrackingState;
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+
+std::string secondsText(std::int64_t ns) {
+  const std::string text = std::to_string(static_cast<double>(ns) * 1e-9);
+  return text.substr(0, text.find('.') + 2);
+}
+
+}  // namespace
+
+void MappingWatch::note(const pf::FrameStatus& status, const pf::Mapper& mapper,
+                        const pf::LoopCounts& loops, StageWatch& watch) {
+  const bool is_lost = status.state == TrackingState::lost;
+  if (!is_lost || found_ns_ > status.stamp_ns || found_ns_ == 0) found_ns_ = status.stamp_ns;
+  const std::string lost_s = secondsText(status.stamp_ns - found_ns_);
+  const std::string reason = reasonOf(status);
+  if (is_lost) {
+    watch.tell(DiagnosticStatus::ERROR, "lost for " + lost_s + " s: " + reason);
+  } else if (status.state == TrackingState::doubtful) {
+    watch.tell(DiagnosticStatus::WARN, "doubtful: " + reason);
+  } else if (status.map_full) {
+    watch.tell(DiagnosticStatus::WARN, "the map is full (map/memory_limit_mb)");
+  } else {
+    watch.tell(DiagnosticStatus::OK, "");
+  }
+  const auto count = [&watch](const char* key, std::size_t value) {
+    watch.set(key, std::to_string(value));
+  };
+  watch.set("state", std::string(name(status.state)));
+  watch.set("lost for (s)", lost_s);
+  count("surfels", status.surfels);
+  count("surfel memory (MB)",
+        static_cast<std::size_t>(static_cast<double>(mapper.map().memory()) / kMegabyte));
+  count("inliers", static_cast<std::size_t>(std::max(0, status.tracking.inliers)));
+  count("keyframes", mapper.backEnd().graph().keyframes().size());
+  count("loops closed", mapper.backEnd().counts().accepted);
+  count("loops refused",
+        mapper.backEnd().counts().refused + loops.one_way +
+            std::accumulate(loops.refused.begin(), loops.refused.end(), std::size_t{0}));
+  count("places searched", loops.searched);
+  count("places found", loops.found);
+}
+
+}  // namespace posefusion_ros

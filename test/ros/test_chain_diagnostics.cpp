@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the chain says of itself on /diagnostics.
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "chain_fixture.hpp"
+
+namespace posefusion_ros {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+/// The newest status of each nodelet of a chain.
+class Diagnostics {
+ public:
+  explicit Diagnostics(Chain& chain) : space_(chain.space().substr(1) + "/") {
+    chain.set("diagnostic_period", 0.05);
+    subscriber_ = chain.handle().subscribe("/diagnostics", 100, &Diagnostics::on, this);
+  }
+  ~Diagnostics() { subscriber_.shutdown(); }
+
+  DiagnosticStatus of(const std::string& nodelet) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = newest_.find(space_ + nodelet + ": frames");
+    return found == newest_.end() ? DiagnosticStatus() : found->second;
+  }
+  std::string value(const std::string& nodelet, const std::string& key) const {
+    for (const auto& each : of(nodelet).values) {
+      if (each.key == key) return each.value;
+    }
+    return "none";
+  }
+  bool waitFor(const std::string& nodelet, const std::string& key,
+               const std::string& value_) const {
+    return Chain::waitUntil([&] { return value(nodelet, key) == value_; });
+  }
+
+ private:
+  void on(const diagnostic_msgs::DiagnosticArray::ConstPtr& all) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto& status : all->status) newest_[status.name] = status;
+  }
+
+  std::string space_;
+  mutable std::mutex mutex_;
+  std::map<std::string, DiagnosticStatus> newest_;
+  ros::Subscriber subscriber_;
+};
+
+TEST(ChainDiagnostics, TellTheFramesAndTheMap) {
+  Chain chain("telling");
+  const Diagnostics diagnostics(chain);
+  ASSERT_TRUE(chain.load());
+  for (int i = 0; i < 3; ++i) chain.process(toMessages(emptyRoom().frame(i).frame));
+  CameraMessages bad = toMessages(emptyRoom().frame(3).frame);
+  bad.depth->encoding = "8UC1";
+  EXPECT_EQ(outcome(chain.process(bad)), TrackingStatusMsg::BAD_INPUT);
+  for (const char* nodelet : {"blur_gate", "pose_detector", "segmenter", "fusion"}) {
+    EXPECT_TRUE(diagnostics.waitFor(nodelet, "frames", "3")) << nodelet;
+    EXPECT_NE(diagnostics.value(nodelet, "rate (Hz)"), "none") << nodelet;
+    EXPECT_NE(diagnostics.value(nodelet, "after the stamp, 99 % (ms)"), "none") << nodelet;
+  }
+  EXPECT_TRUE(diagnostics.waitFor("blur_gate", "given up: bad_input", "1"));
+  EXPECT_TRUE(diagnostics.waitFor("fusion", "given up: bad_input", "1")) << "it counts for all";
+  EXPECT_TRUE(diagnostics.waitFor("loop_closer", "frames", "1")) << "the first keyframe";
+  EXPECT_EQ(diagnostics.value("segmenter", "people"), "0");
+  EXPECT_EQ(diagnostics.value("fusion", "state"), "tracking");
+  EXPECT_EQ(diagnostics.value("fusion", "lost for (s)"), "0.0");
+  EXPECT_EQ(diagnostics.value("fusion", "keyframes"), "1");
+  EXPECT_GT(std::stoi(diagnostics.value("fusion", "surfels")), 1000);
+}
+
+TEST(ChainDiagnostics, ALostCameraIsAnErrorThatSaysSinceWhen) {
+  Chain chain("losing");
+  const Diagnostics diagnostics(chain);
+  chain.set("tracking/lost_after_frames", 1);
+  ASSERT_TRUE(chain.load());
+  chain.process(toMessages(emptyRoom().frame(0).frame));
+  CameraMessages covered = toMessages(emptyRoom().frame(1).frame);
+  std::fill(covered.depth->data.begin(), covered.depth->data.end(), std::uint8_t{0});
+  TrackingStatusMsg status;
+  for (int i = 1; i < 30 && status.state != TrackingStatusMsg::LOST; ++i) {
+    status = chain.process(restamped(covered, emptyRoom().stamp(i)));
+  }
+  ASSERT_EQ(status.state, TrackingStatusMsg::LOST);
+  ASSERT_TRUE(diagnostics.waitFor("fusion", "state", "lost"));
+  EXPECT_EQ(diagnostics.of("fusion").level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(diagnostics.of("fusion").message.rfind("lost for ", 0), 0U)
+      << diagnostics.of("fusion").message;
+}
+
+TEST(ChainDiagnostics, ANodeletThatStaysIdleSaysWhy) {
+  Chain chain("idle");
+  const Diagnostics diagnostics(chain);
+  ros::param::set(chain.space() + "/segmenter/segmentation/margin_px", -1);
+  ASSERT_TRUE(chain.load({"segmenter"}));
+  EXPECT_TRUE(Chain::waitUntil(
+      [&] { return diagnostics.of("segmenter").level == DiagnosticStatus::ERROR; }));
+  EXPECT_NE(diagnostics.of("segmenter").message.find("margin_px"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace posefusion_ros
