@@ -191,13 +191,16 @@ Vector3f Poser::wantedHand(float side, const Vector3f& shoulder) const {
 }
 
 void Poser::poseBurden() {
-  // It appears in the hands when they are ready, and is gone (a point in the chest) otherwise.
+  // It appears in the hands when they are ready, and is hidden in the chest otherwise, small but not
+  // a point: Embree stops the program where boxes to be parted have no extent.
   const Eigen::Isometry3f& chest = posture_[index(Bone::chest)];
   Eigen::Isometry3f& burden = posture_[index(Bone::burden)];
   burden = chest;
   if (state_.carry > 0.85) return;
-  burden.linear().setZero();
-  burden.translation() = chest * (rig_.scale() * Vector3f(0, 0, 1.3F));
+  burden.linear() *= 0.02F;
+  const float s = rig_.scale();
+  burden.translation() =
+      chest * (s * Vector3f(0, 0, 1.3F)) - burden.linear() * rig_.start[index(Bone::burden)];
 }
 
 void Poser::poseArm(float side) {
