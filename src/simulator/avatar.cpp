@@ -42,7 +42,8 @@ Eigen::AlignedBox3f boxOf(const std::vector<Blob>& blobs) {
 
 }  // namespace
 
-Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearance_(rig_, outfit) {
+Avatar::Avatar(const Build& build, const Outfit& outfit, float coarseness)
+    : rig_(build), appearance_(rig_, outfit) {
   const std::vector<Blob> body = bodyBlobs(rig_, outfit);
   const auto body_distance = [&](const Vector3f& p) {
     // Folds of cloth: hollows and ridges of a few millimetres.
@@ -51,8 +52,14 @@ Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearan
     return unionOf(body, p, 0.030F) + folds;
   };
   Eigen::AlignedBox3f body_box = boxOf(body);
-  add(polygonise(body_distance, body_box, kBodyCell_m), body, body_distance);
+  add(polygonise(body_distance, body_box, coarseness * kBodyCell_m), body, body_distance);
+  addHead(outfit, coarseness * kHeadCell_m);
+  addHands(coarseness * kHandCell_m);
+  addBurden();
+  hair_tag_.resize(rest_.size(), 1.0F);
+}
 
+void Avatar::addHead(const Outfit& outfit, float cell_m) {
   first_head_ = static_cast<std::uint32_t>(triangles_.size());
   const HeadShape shape(rig_, outfit);
   const float s = rig_.scale();
@@ -65,20 +72,20 @@ Avatar::Avatar(const Build& build, const Outfit& outfit) : rig_(build), appearan
   const Eigen::AlignedBox3f head_box(s * Vector3f(-0.16F, -0.13F, 1.43F),
                                      s * Vector3f(0.14F, 0.13F, 1.79F));
   const std::size_t before = rest_.size();
-  add(polygonise(head_distance, head_box, kHeadCell_m), head, head_distance);
+  add(polygonise(head_distance, head_box, cell_m), head, head_distance);
   hair_tag_.assign(rest_.size(), 1.0F);
   for (std::size_t v = before; v < rest_.size(); ++v) {
     hair_tag_[v] = shape.hair(rest_[v]) - shape.skin(rest_[v]);
   }
+}
 
+void Avatar::addHands(float cell_m) {
   first_hand_ = static_cast<std::uint32_t>(triangles_.size());
   for (const float side : {1.0F, -1.0F}) {
     const std::vector<Blob> hand = handBlobs(rig_, side);
     const auto hand_distance = [&](const Vector3f& p) { return unionOf(hand, p, 0.006F); };
-    add(polygonise(hand_distance, boxOf(hand), kHandCell_m), hand, hand_distance);
+    add(polygonise(hand_distance, boxOf(hand), cell_m), hand, hand_distance);
   }
-  addBurden();
-  hair_tag_.resize(rest_.size(), 1.0F);
 }
 
 void Avatar::addBurden() {

@@ -15,7 +15,8 @@ namespace pf::simulator {
 /// to four bones for each vertex.
 class Avatar {
  public:
-  Avatar(const Build& build, const Outfit& outfit);
+  /// `coarseness` times the usual length of a triangle: 1 for pictures, 2 for depth at 160x120.
+  Avatar(const Build& build, const Outfit& outfit, float coarseness = 1.0F);
 
   struct Influence {
     std::array<std::uint8_t, 4> bone{};
@@ -41,6 +42,8 @@ class Avatar {
  private:
   void add(const Polygonised& part, const std::vector<Blob>& blobs,
            const std::function<float(const Eigen::Vector3f&)>& distance);
+  void addHead(const Outfit& outfit, float cell_m);
+  void addHands(float cell_m);
   void addBurden();
   static void bind(const Eigen::Vector3f& p, const std::vector<Blob>& blobs, Influence& influence);
 

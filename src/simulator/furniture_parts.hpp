@@ -49,5 +49,12 @@ void addClutter(const Part& part);
 void addHanging(const Part& part);
 void addWindow(const Part& part);
 void addRadiator(const Part& part);
+void addStool(const Part& part);
+void addSlatChair(const Part& part);
+void addArmchair(const Part& part);
+void addCoatRack(const Part& part);
+void addLamp(const Part& part);
+void addCurtain(const Part& part);
+void addBag(const Part& part);
 
 }  // namespace pf::simulator

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/random.hpp"
+
 namespace pf::simulator {
 namespace {
 
@@ -19,6 +21,12 @@ void setInfrared(Material& material, const std::string& kind) {
   if (kind == "tiles") material.infrared = 0.5F, material.gloss = 0.15F;
   if (kind == "screen") material.emission = Vector3f(0.12F, 0.13F, 0.15F);
   if (kind == "view") material.emission = Vector3f(2.6F, 2.8F, 3.1F);
+}
+
+cv::Mat plainPicture(const std::string& kind, std::uint32_t seed) {
+  std::uint32_t key = seed;
+  for (const char letter : kind) key = hash(key, static_cast<std::uint32_t>(letter));
+  return cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(between(key, 20.0, 235.0)));
 }
 
 int cells(float length_m, float cell_m) {
@@ -39,7 +47,7 @@ std::uint16_t World::material(const std::string& kind, std::uint32_t seed, const
   auto it = texture_of_.find(key);
   if (it == texture_of_.end()) {
     it = texture_of_.emplace(key, static_cast<int>(textures.size())).first;
-    textures.emplace_back(paintTexture(kind, seed));
+    textures.emplace_back(plain ? plainPicture(kind, seed) : paintTexture(kind, seed));
   }
   Material material;
   material.texture = it->second;

@@ -65,6 +65,9 @@ struct World {
   std::vector<Footprint> footprints;
   std::vector<Footprint> passages;  ///< floor of doorways
   std::vector<Eigen::AlignedBox3d> rooms;
+  /// Pictures are not painted but of one random grey each: for depth alone, a thousand times
+  /// faster.
+  bool plain = false;
 
   /// The material of a texture kind, painted once for each (kind, seed), tinted.
   std::uint16_t material(const std::string& kind, std::uint32_t seed,

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Training pictures of people.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <iostream>
+
+#include "posefusion/core/parallel.hpp"
+#include "simulator/loose_posture.hpp"
+#include "simulator/person_samples.hpp"
+
+namespace pf::simulator {
+namespace {
+
+std::vector<char> bytesOf(std::uint32_t seed, std::uint32_t room) {
+  std::vector<char> bytes;
+  for (const PersonSample& sample : drawSamples(seed, room)) appendBytes(sample, bytes);
+  return bytes;
+}
+
+TEST(PersonSamples, SameSeedSameBytesWithAnyNumberOfThreads) {
+  std::vector<std::vector<char>> together(2);
+  parallelFor(2, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) together[i] = bytesOf(3, static_cast<unsigned>(i));
+  });
+  EXPECT_EQ(together[0].size(), kSamplesPerRoom * kSampleBytes);
+  EXPECT_NE(together[0], together[1]);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  for (std::uint32_t room = 0; room < 2; ++room) EXPECT_EQ(bytesOf(3, room), together[room]);
+}
+
+/// Whether the person is within a pixel of the place: lateral noise moves the map's rims.
+bool isOn(const cv::Mat& person, const cv::Point2f& place, int id) {
+  const cv::Rect all(0, 0, person.cols, person.rows);
+  const cv::Rect around(cvRound(place.x) - 1, cvRound(place.y) - 1, 3, 3);
+  return cv::countNonZero(person(around & all) == id) > 0;
+}
+
+TEST(PersonSamples, SeenJointsLieOnTheirPeople) {
+  int pictures = 0, with_people = 0, joints = 0, on = 0, pixels = 0, without_depth = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::uint32_t room = 0; room < 3; ++room) {
+    for (const PersonSample& sample : drawSamples(7, room)) {
+      ++pictures;
+      with_people += cv::countNonZero(sample.person) > 0 ? 1 : 0;
+      pixels += static_cast<int>(sample.depth_mm.total());
+      without_depth += cv::countNonZero(sample.depth_mm == 0);
+      for (std::size_t i = 0; i < sample.people.size(); ++i) {
+        const auto& truth = sample.people[i];
+        for (std::size_t j = 0; j < truth.joints.size(); ++j) {
+          if (truth.states[j] == JointState::unseen) {
+            EXPECT_EQ(truth.joints[j], cv::Point2f(-1.0F, -1.0F));
+            continue;
+          }
+          ++joints;
+          on += isOn(sample.person, truth.joints[j], static_cast<int>(i) + 1) ? 1 : 0;
+        }
+      }
+    }
+  }
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  std::cout << pictures / spent.count() << " pictures a second on this machine, now\n";
+  EXPECT_GT(joints, 1000);
+  EXPECT_GE(on, 0.99 * joints);
+  EXPECT_GT(with_people, 0.5 * pictures);
+  EXPECT_LT(with_people, 0.95 * pictures);
+  EXPECT_GT(without_depth, 0.03 * pixels);
+  EXPECT_LT(without_depth, 0.5 * pixels);
+}
+
+/// Lengths between joints that a bone connects.
+std::vector<float> boneLengths(const Rig& rig, const Posture& posture) {
+  std::vector<float> lengths;
+  for (std::size_t bone = 0; bone < posture.size(); ++bone) {
+    const int parent = Rig::kParent[bone];
+    if (parent < 0 || bone == index(Bone::burden)) continue;
+    const Eigen::Vector3f from =
+        posture[static_cast<std::size_t>(parent)] * rig.start[static_cast<std::size_t>(parent)];
+    lengths.push_back((posture[bone] * rig.start[bone] - from).norm());
+  }
+  return lengths;
+}
+
+TEST(LoosePosture, KeepsBonesTogether) {
+  const Rig rig{Build()};
+  Posture rest;
+  rest.fill(Eigen::Isometry3f::Identity());
+  const auto lengths = boneLengths(rig, rest);
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    Dice dice(seed);
+    Posture posture = rest;
+    loosen(rig, posture, true, dice);
+    const auto now = boneLengths(rig, posture);
+    for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], lengths[i], 2e-4) << i;
+  }
+}
+
+TEST(LoosePosture, WhoLiesIsLow) {
+  const Rig rig{Build()};
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    Dice dice(seed);
+    Posture posture;
+    posture.fill(Eigen::Isometry3f::Identity());
+    layDown(rig, 0.4F, dice, posture);
+    for (const Bone bone : {Bone::pelvis, Bone::chest, Bone::head, Bone::left_foot}) {
+      const float z = (posture[index(bone)] * rig.start[index(bone)]).z();
+      EXPECT_GT(z, 0.47F);
+      EXPECT_LT(z, 1.35F);  // on the side, upon an arm that is stretched out
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pf::simulator
