@@ -15,8 +15,8 @@ std::vector<Avatar> drawCast(int count, Dice& dice);
 
 /// People at one moment.
 struct Arrangement {
-  Postures postures;          ///< those who are away are far below the floor
-  std::vector<char> present;  ///< of each
+  Postures postures;                                ///< those who are away are far below the floor
+  std::vector<char> present;                        ///< of each
   Eigen::Vector3d focus = Eigen::Vector3d::Zero();  ///< worth looking at
 };
 

@@ -191,8 +191,8 @@ Vector3f Poser::wantedHand(float side, const Vector3f& shoulder) const {
 }
 
 void Poser::poseBurden() {
-  // It appears in the hands when they are ready, and is hidden in the chest otherwise, small but not
-  // a point: Embree stops the program where boxes to be parted have no extent.
+  // It appears in the hands when they are ready, and is hidden in the chest otherwise, small but
+  // not a point: Embree stops the program where boxes to be parted have no extent.
   const Eigen::Isometry3f& chest = posture_[index(Bone::chest)];
   Eigen::Isometry3f& burden = posture_[index(Bone::burden)];
   burden = chest;
