@@ -71,7 +71,7 @@ void addFlaws(Dice& dice, cv::Mat& depth_mm) {
     const double probability = dice.between(0.05, 0.8);
     loseRims(probability, dice.next(), depth_mm);
   }
-  if (dice.chance(0.25)) {
+  if (dice.chance(0.12)) {
     for (int i = dice.below(4); i >= 0; --i) losePatch(dice, depth_mm);
   }
   // Registered depth does not reach the borders of the colour image.

@@ -109,8 +109,8 @@ class Arranger {
     const double lot = dice_.between(0.0, 1.0);
     const int most = static_cast<int>(cast_.size());
     const int count = lot < 0.14   ? 0
-                      : lot < 0.50 ? 1
-                      : lot < 0.75 ? std::min(2, most)
+                      : lot < 0.46 ? 1
+                      : lot < 0.72 ? std::min(2, most)
                                    : std::min(most, 3 + dice_.below(most));
     const int first = dice_.below(most);
     for (int i = 0; i < count; ++i) {

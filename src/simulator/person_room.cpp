@@ -55,7 +55,7 @@ class Furnisher {
 
   void furnish() {
     const double area = room_.size_m.x() * room_.size_m.y();
-    const int tables = dice_.below(2 + static_cast<int>(area / 8.0));
+    const int tables = dice_.below(3 + static_cast<int>(area / 6.0));
     const int at_walls = 4 + dice_.below(9);
     const int loose = 2 + dice_.below(4 + static_cast<int>(area / 3.0));
     for (int i = 0; i < at_walls; ++i) addAtWall();
@@ -129,7 +129,7 @@ class Furnisher {
     if (!fits(at, radius + 0.2)) return;
     taken_.emplace_back(at, radius);
     const double yaw = dice_.between(0.0, 2.0 * M_PI);
-    add(dice_.chance(0.3) ? "desk" : "table", {at.x(), at.y(), 0.0}, yaw, size);
+    add(dice_.chance(0.5) ? "desk" : "table", {at.x(), at.y(), 0.0}, yaw, size);
     if (dice_.chance(0.7)) {
       add("clutter", {at.x(), at.y(), size.z()}, yaw, {0.8 * size.x(), 0.8 * size.y(), 0.3});
     }
@@ -182,7 +182,7 @@ PersonRoom drawRoom(Dice& dice) {
   PersonRoom room;
   room.world.plain = true;
   RoomSpec spec;
-  for (int i = 0; i < 2; ++i) spec.size_m[i] = dice.between(2.5, i == 0 ? 9.0 : 7.0);
+  for (int i = 0; i < 2; ++i) spec.size_m[i] = dice.between(2.8, i == 0 ? 10.0 : 8.0);
   spec.size_m.z() = dice.between(2.3, 3.4);
   spec.lamps_x = spec.lamps_y = 1;
   room.size_m = spec.size_m;

@@ -35,7 +35,7 @@ PinholeCamera drawCamera(Dice& dice) {
 /// From 0.4 to 6.5 m off the focus, within the room; mostly about level, sometimes as in a fall.
 Isometry3d drawView(const PersonRoom& room, const Vector3d& focus, Dice& dice) {
   const double lot = dice.between(0.0, 1.0), bearing = dice.between(0.0, 2.0 * M_PI);
-  const double distance = lot < 0.2   ? dice.between(0.4, 1.2)
+  const double distance = lot < 0.12  ? dice.between(0.4, 1.2)
                           : lot < 0.8 ? dice.between(1.0, 4.0)
                                       : dice.between(3.0, 6.5);
   Vector3d eye = focus + distance * Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
@@ -45,10 +45,10 @@ Isometry3d drawView(const PersonRoom& room, const Vector3d& focus, Dice& dice) {
   const double astray = dice.chance(0.1) ? 2.0 : 0.3;
   target.x() += astray * dice.between(-1.0, 1.0) * distance;
   target.y() += astray * dice.between(-1.0, 1.0) * distance;
-  target.z() += 0.3 * dice.between(-1.0, 1.0) * distance;
+  target.z() += 0.15 * dice.between(-1.0, 1.0) * distance;
   if ((target - eye).head<2>().norm() < 0.05) target.x() += 0.3;
   const double manner = dice.between(0.0, 1.0);
-  const bool falling = manner > 0.75, down = manner > 0.92;
+  const bool falling = manner > 0.84, down = manner > 0.95;
   if (down) eye.z() = dice.between(0.1, 0.5);
   // About level: a robot looks ahead and a little down, whatever is there.
   if (!falling)
