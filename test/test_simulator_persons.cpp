@@ -4,7 +4,9 @@
 #include <tbb/global_control.h>
 
 #include <chrono>
+#include <cstdio>
 #include <iostream>
+#include <string>
 
 #include "posefusion/core/parallel.hpp"
 #include "simulator/loose_posture.hpp"
@@ -28,6 +30,17 @@ TEST(PersonSamples, SameSeedSameBytesWithAnyNumberOfThreads) {
   EXPECT_NE(together[0], together[1]);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   for (std::uint32_t room = 0; room < 2; ++room) EXPECT_EQ(bytesOf(3, room), together[room]);
+}
+
+TEST(PersonSamples, ProgramWritesTheRoomsAskedFor) {
+  const std::string command = std::string(POSEFUSION_TOOL_DIR) +
+                              "/posefusion_person_data --seed 3 --first-room 1 --rooms 1";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::vector<char> bytes(kSamplesPerRoom * kSampleBytes + 1);
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), pipe));
+  EXPECT_EQ(pclose(pipe), 0);
+  EXPECT_EQ(bytes, bytesOf(3, 1));
 }
 
 /// Whether the person is within a pixel of the place: lateral noise moves the map's rims.

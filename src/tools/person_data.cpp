@@ -2,9 +2,11 @@
 // posefusion_person_data: training pictures for the embedded person model, to stdout.
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/parallel.hpp"
