@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures a person model on simulated rooms that training never saw."""
 import argparse
+import pathlib
 import time
 
 import cv2
 import numpy as np
 
-from samples import SAMPLE, generate, network_input, read_room
+from samples import FARTHEST_M, NEAREST_M, SAMPLE, generate, network_input, read_room
 
 VALIDATION_SEED = 990001  # training uses smaller ones
 MASK_LEVEL, JOINT_LEVEL = 0.5, 0.3
@@ -40,6 +41,10 @@ def joints_found(joints, maps):
     return found, asked
 
 
+def mean(values):
+    return float(np.mean(values)) if values else 0.0
+
+
 class Report:
     """Sums over pictures."""
 
@@ -50,11 +55,10 @@ class Report:
         self.joints = np.zeros(2, int)
         self.near_joints = np.zeros(2, int)
 
-    def add(self, sample, mask, joints):
-        depth = sample["depth"]
-        known = depth > 0
-        truth = (sample["person"] > 0) & known
-        answer = cv2.resize(mask, (160, 120), interpolation=cv2.INTER_LINEAR) > MASK_LEVEL
+    def add_mask(self, known, truth, mask):
+        """Truth (bool) where there is depth; the answer, where it says person."""
+        truth = truth & known
+        answer = cv2.resize(mask, known.shape[::-1], interpolation=cv2.INTER_LINEAR) > MASK_LEVEL
         answer &= known
         both = np.count_nonzero(answer & truth)
         if not truth.any():
@@ -65,6 +69,12 @@ class Report:
             self.recall.append(both / np.count_nonzero(truth))
             if answer.any():
                 self.precision.append(both / np.count_nonzero(answer))
+        return answer
+
+    def add(self, sample, mask, joints):
+        depth = sample["depth"]
+        known = depth > 0
+        answer = self.add_mask(known, sample["person"] > 0, mask)
         for person in range(len(sample["centre"])):
             body = (sample["person"] == person + 1) & known
             if not body.any():
@@ -81,9 +91,9 @@ class Report:
     def summary(self):
         return {
             "frames with people over 2 %": len(self.iou),
-            "mean IoU": float(np.mean(self.iou)),
-            "mean recall": float(np.mean(self.recall)),
-            "mean precision": float(np.mean(self.precision)),
+            "mean IoU": mean(self.iou),
+            "mean recall": mean(self.recall),
+            "mean precision": mean(self.precision),
             "empty frames": self.empty,
             "of them masked over 1 %": self.false / max(1, self.empty),
             "people 1-4 m, head and torso in view": self.people,
@@ -121,16 +131,52 @@ def opencv_answers(model):
     return answer, spent
 
 
+def shrunk(depth_m):
+    """Depth at 160x120 of 640x480: shrinkDepth of the package."""
+    cells = depth_m.reshape(120, 4, 160, 4).transpose(0, 2, 1, 3).reshape(120, 160, 16).copy()
+    valid = (cells > NEAREST_M) & (cells < FARTHEST_M)
+    cells[~valid] = np.inf
+    cells.sort(-1)
+    count = valid.sum(-1)
+    middle = np.maximum((count - 1) // 2, 0)[..., None]
+    return np.where(count < 2, 0, np.take_along_axis(cells, middle, -1)[..., 0])
+
+
+def measure_recording(answers, folder, every):
+    """A simulated recording of 640x480 (posefusion_simulate, TUM folder), each so many frames."""
+    lines = (folder / "camera.yaml").read_text(encoding="utf-8").splitlines()
+    factor = float(dict(line.split(": ", 1) for line in lines if ": " in line)["depth_factor"])
+    report = Report()
+    depths, masks = (sorted((folder / name).glob("*.png")) for name in ("depth", "mask"))
+    for depth_file, mask_file in list(zip(depths, masks, strict=True))[::every]:
+        depth = cv2.imread(str(depth_file), cv2.IMREAD_UNCHANGED).astype(np.float32) / factor
+        truth = cv2.imread(str(mask_file), cv2.IMREAD_GRAYSCALE) > 0
+        mask, _ = answers(network_input(1000 * shrunk(depth)[None]))
+        report.add_mask(depth > 0, truth, mask[0, 0])
+    names = list(report.summary())[:6]
+    return {name: report.summary()[name] for name in names}
+
+
+def show(summary):
+    for name, value in summary.items():
+        print(f"{name}: {value:.3f}" if isinstance(value, float) else f"{name}: {value}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("model", help="ONNX file")
     parser.add_argument("--generator", default="devel/lib/posefusion/posefusion_person_data")
     parser.add_argument("--rooms", type=int, default=24, help="96 pictures of each")
+    parser.add_argument("--recordings", type=pathlib.Path, nargs="*", default=[],
+                        help="simulated TUM folders of 640x480 instead of rooms")
+    parser.add_argument("--every", type=int, default=45, help="each so many frames of them")
     options = parser.parse_args()
     answers, spent = opencv_answers(options.model)
-    summary = measure(answers, validation_rooms(options.generator, options.rooms))
-    for name, value in summary.items():
-        print(f"{name}: {value:.3f}" if isinstance(value, float) else f"{name}: {value}")
+    for folder in options.recordings:
+        print(folder.name)
+        show(measure_recording(answers, folder, options.every))
+    if not options.recordings:
+        show(measure(answers, validation_rooms(options.generator, options.rooms)))
     print(f"OpenCV, {cv2.getNumThreads()} threads: median {1e3 * np.median(spent):.1f} ms")
 
 
