@@ -124,7 +124,7 @@ TEST_F(RunReportTest, SummaryHasTheNamesThatStay) {
   EXPECT_NEAR(s.at("rpe_trans_m_per_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(s.at("rpe_rot_deg_per_s").get<double>(), 0, 1e-6);
   EXPECT_EQ(s.at("configuration").at("blur").at("enabled"), true);
-  EXPECT_EQ(s.at("configuration").at("pose").at("detector"), "network");
+  EXPECT_EQ(s.at("configuration").at("pose").at("detector"), "auto");
   EXPECT_FALSE(s.at("version").get<std::string>().empty());
 }
 

@@ -128,6 +128,7 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
   const float max_deviation_px = kMaxDeviation * static_cast<float>(grid.step * grid.cols);
   for (TrackedPerson& tracked : people) {
     tracked.fresh = false;
+    tracked.detection = -1;
     PersonPoints points = pointsOf(tracked, grid);
     if (points.before.empty()) continue;
     follow(flow, points);
@@ -143,7 +144,8 @@ void mergeDetections(const People& detected, const SceneGrid& grid,
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (int cell : people[i].cells) holder[cell] = static_cast<int>(i);
   }
-  for (Person person : detected.people) {
+  for (std::size_t i = 0; i < detected.people.size(); ++i) {
+    Person person = detected.people[i];
     dropJointsOutside(grid, person);
     const int continued = findContinued(person, grid, holder, people);
     if (continued < 0) {
@@ -154,6 +156,7 @@ void mergeDetections(const People& detected, const SceneGrid& grid,
     }
     TrackedPerson& tracked = continued < 0 ? people.back() : people[continued];
     tracked.fresh = true;
+    tracked.detection = static_cast<int>(i);
     tracked.unseen = 0.0;
   }
 }

@@ -15,6 +15,7 @@ namespace pf {
 struct TrackedPerson {
   Person person;           ///< joints in the newest frame
   bool fresh = false;      ///< detected in the newest frame
+  int detection = -1;      ///< if so: its index there
   double unseen = 0.0;     ///< frames since the last detection, weighted by what the map says
   bool in_map = false;     ///< the map holds the person by mistake: what it says there is not used
   float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
