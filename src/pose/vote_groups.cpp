@@ -41,7 +41,8 @@ class Grouper {
   }
 
   static int binOf(float pixel, int bins) {
-    return std::clamp(static_cast<int>(pixel / 4.0F) + kMargin, 0, bins - 1);
+    const float bin = std::floor(pixel / 4.0F) + static_cast<float>(kMargin);
+    return static_cast<int>(std::clamp(bin, 0.0F, static_cast<float>(bins - 1)));
   }
 
   /// The free vote that has most free votes around it in the image.
