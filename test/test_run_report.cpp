@@ -77,6 +77,7 @@ TEST(RunStatistics, MasksAreAveragedOverTheSharpFrames) {
   statistics.add(frameAt(1, FrameOutcome::fused));
   statistics.add(frameAt(2, FrameOutcome::blurred));
   EXPECT_EQ(statistics.masks().with_mask, 1U);
+  EXPECT_EQ(statistics.masks().over_1_percent, 1U);
   EXPECT_DOUBLE_EQ(statistics.masks().mean_part, 0.25);
 }
 

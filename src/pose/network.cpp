@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAdvice =
     "; fetch one with scripts/get_models, name another with pose.model, or choose pose.detector "
-    "recorded or none";
+    "embedded, recorded or none";
 
 void requireReadable(const std::string& path) {
   if (!fs::is_regular_file(path) || !std::ifstream(path)) {
