@@ -2,7 +2,9 @@
 #include "posefusion/pose/person_groups.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "vote_groups.hpp"
@@ -14,6 +16,7 @@ constexpr float kMinMask = 0.4F;        // probability of a cell that has a vote
 constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint at all ...
 constexpr float kSureJoint = 0.3F;      // ... and of one that speaks for a person, who needs
 constexpr int kMinSureJoints = 2;       // so many
+constexpr int kScoredJoints = 6;        // whose mean is the person's score
 constexpr float kJointReach_m = 0.50F;  // of a joint's vote
 constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is nobody
 
@@ -115,17 +118,15 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
   }
 }
 
-/// Two joints speak for the person; its score is their mean.
+/// Two joints speak for the person; its score is the mean of the best, which those who have fewer
+/// miss.
 bool isBelieved(Person& person) {
-  int sure = 0, seen = 0;
-  float sum = 0.0F;
-  for (const Keypoint& joint : person.joints) {
-    sure += joint.p > kSureJoint;
-    seen += joint.p > 0.0F;
-    sum += joint.p;
-  }
-  person.score = seen > 0 ? sum / static_cast<float>(seen) : 0.0F;
-  return sure >= kMinSureJoints;
+  std::array<float, kJointCount> p{};
+  for (std::size_t j = 0; j < p.size(); ++j) p[j] = person.joints[j].p;
+  std::sort(p.begin(), p.end(), std::greater<>());
+  person.score = 0.0F;
+  for (int j = 0; j < kScoredJoints; ++j) person.score += p[j] / kScoredJoints;
+  return p[kMinSureJoints - 1] > kSureJoint;
 }
 
 /// Group of each person, best first.

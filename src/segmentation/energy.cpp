@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "posefusion/segmentation/mapped_people.hpp"
+
 namespace pf {
 namespace {
 
@@ -25,6 +27,7 @@ constexpr float kAgreesWithMap = -2.0F;
 
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
+constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth tells less ...
@@ -40,7 +43,7 @@ Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerso
   // Next to a joint that was seen just now, the skeleton knows better than a young surface.
   const bool too_young = background == Background::recent && people[candidate].fresh &&
                          evidence.distance.relative[cell] < kInside;
-  if (in_map || too_young) return Background::unknown;
+  if (in_map || too_young || isMappedPerson(evidence, people, cell)) return Background::unknown;
   return background;
 }
 
@@ -95,7 +98,9 @@ int candidateOf(const Evidence& evidence, int cell) {
 }
 
 bool isFlat(const Evidence& evidence, int cell) {
-  return evidence.on_plane[cell] != 0 && evidence.background[cell] != Background::nearer;
+  const Flatness flatness = evidence.flatness[cell];
+  if (flatness == Flatness::small) return true;
+  return flatness == Flatness::large && evidence.background[cell] != Background::nearer;
 }
 
 void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
@@ -126,11 +131,13 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
                logLikelihoodRatio(people[candidate].color, outside, bins[cell], kColorLimit);
     }
     value += model_weight * modelTerm(background);
-    value += mask_weight * shownTerm(evidence.shown, cell);
+    const bool is_shown = candidate >= 0 && !people[candidate].body.shown.empty();
+    value += mask_weight * shownTerm(evidence.shown, cell, is_shown);
     if (isFlat(evidence, cell)) value += kOnPlane;
     if (evidence.carried[cell] >= 0 && background != Background::agrees) {
       value += in_front ? kCarriedInFront : kCarried;
     }
+    if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
     unary[cell] = value;
   }

@@ -47,6 +47,12 @@ std::vector<int> shownCells(const std::vector<int>& sure, float depth_m, const S
   return cells;
 }
 
+/// The line to a joint that is hidden crosses what hides it: seeds there are none.
+template <typename Condition>
+void dropCells(const Condition& condition, std::vector<int>& cells) {
+  cells.erase(std::remove_if(cells.begin(), cells.end(), condition), cells.end());
+}
+
 }  // namespace
 
 MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background) {
@@ -66,6 +72,13 @@ bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tra
       liftPerson(tracked.person, evidence.grid, tracked.fresh ? shown_depth_m : tracked.depth_m);
   Body& body = tracked.body;
   body.shown = shownCells(sure, shown_depth_m, evidence.grid);
+  const bool is_shown = !body.shown.empty();
+  const auto hides = [&](int cell) {
+    return evidence.flatness[cell] == Flatness::small ||
+           (is_shown && isDenied(evidence.shown, cell));
+  };
+  dropCells(hides, body.seeds);
+  dropCells(hides, body.shown);
   MapVote vote = voteOf(body.seeds, evidence.background);
   vote += voteOf(body.shown, evidence.background);
   const bool in_map = vote.known >= kMinKnownSeeds && vote.agrees > kInMapPart * vote.known;
@@ -74,10 +87,8 @@ bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tra
   if (in_map && tracked.fresh && !tracked.in_map) return false;
   if (!tracked.in_map) {
     const auto agrees = [&](int cell) { return evidence.background[cell] == Background::agrees; };
-    body.seeds.erase(std::remove_if(body.seeds.begin(), body.seeds.end(), agrees),
-                     body.seeds.end());
-    body.shown.erase(std::remove_if(body.shown.begin(), body.shown.end(), agrees),
-                     body.shown.end());
+    dropCells(agrees, body.seeds);
+    dropCells(agrees, body.shown);
   }
   body.anchors = cellsBeforeMap(evidence, tracked);
   if (tracked.unseen > carry_frames) return false;

@@ -118,7 +118,6 @@ void PeopleSegmenter::State::cut(const SegmentationConfig& config) {
   markCarriedMasks();
   markShownPeople();
   measureDistance(people, evidence.grid, kDistanceLimit, evidence.distance);
-  planes.find(evidence.grid, evidence.on_plane);
   improvedUnary(evidence, config, people, unary);
   cutter.cut(evidence.grid, unary, config, labels);
   keepAnchoredRegions(evidence.grid, people, labels);
@@ -177,6 +176,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   if (background != nullptr) {
     compareWithModel(s.evidence.grid, *background, T_view_camera, s.evidence.background);
   }
+  s.planes.find(s.evidence.grid, s.evidence.flatness);
   s.locate(config_.carry_frames);
   if (s.people.empty()) return result;
   s.cut(config_);

@@ -10,8 +10,10 @@
 namespace pf {
 namespace {
 
-constexpr float kSure = 0.85F;                         // probability
-constexpr float kMostFor = 4.0F, kMostAgainst = 1.0F;  // log-odds
+constexpr float kSure = 0.85F;  // probability
+constexpr float kDenied = 0.25F;
+constexpr float kMostFor = 4.0F, kMostAgainst = 3.0F;  // log-odds
+constexpr float kMostAgainstUnshown = 0.7F;            // of people whom the mask does not show
 constexpr float kFloor = 0.004F;                       // of a probability: a step of the mask
 constexpr std::size_t kRowsAtOnce = 16;
 
@@ -78,10 +80,19 @@ void sampleMask(const PersonMask& mask, const cv::Size& image, const SceneGrid& 
   });
 }
 
-float shownTerm(const ShownPeople& shown, int cell) {
+bool isShown(const ShownPeople& shown, int cell) {
+  return !shown.empty() && shown.probability[cell] > kSure;
+}
+
+bool isDenied(const ShownPeople& shown, int cell) {
+  return !shown.empty() && shown.probability[cell] < kDenied;
+}
+
+float shownTerm(const ShownPeople& shown, int cell, bool is_shown) {
   if (shown.empty()) return 0.0F;
   const float p = std::clamp(shown.probability[cell], kFloor, 1.0F - kFloor);
-  return std::clamp(std::log(p / (1.0F - p)), -kMostAgainst, kMostFor);
+  const float against = is_shown ? kMostAgainst : kMostAgainstUnshown;
+  return std::clamp(std::log(p / (1.0F - p)), -against, kMostFor);
 }
 
 }  // namespace pf

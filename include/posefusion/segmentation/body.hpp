@@ -24,7 +24,7 @@ struct Body {
   std::vector<int> shown;    ///< cells that the detector's mask shows for sure
   std::vector<int> anchors;  ///< seeds, shown cells, and those of the carried mask that stand
                              ///< before the map
-  float depth_m = 0.0F;  ///< median depth of the seeds, 0: no seed has depth
+  float depth_m = 0.0F;      ///< median depth of the seeds, 0: no seed has depth
 };
 
 /// Lifts a person: joints, and samples along limbs between seen joints, get the median depth of

@@ -25,7 +25,14 @@ void sampleMask(const PersonMask& mask, const cv::Size& image, const SceneGrid& 
                 ShownPeople& shown);
 
 /// Cost that a cell pays for being called background (> 0) or person (< 0) by what the mask says:
-/// limited log-odds, of which a denial counts little, for masks of depth alone have gaps.
-float shownTerm(const ShownPeople& shown, int cell);
+/// limited log-odds. `is_shown`: the mask shows the person in question; where it does not, that it
+/// denies a cell tells little.
+float shownTerm(const ShownPeople& shown, int cell, bool is_shown);
+
+/// The mask says that the cell is a person's, for sure.
+bool isShown(const ShownPeople& shown, int cell);
+
+/// The mask says that the cell is nobody's.
+bool isDenied(const ShownPeople& shown, int cell);
 
 }  // namespace pf
