@@ -57,11 +57,12 @@ ColorHistogram learnColors(const Evidence& evidence, const std::vector<int>& bin
     const Background background = backgroundOf(evidence, people, cell);
     const int candidate = candidateOf(evidence, cell);
     const bool carried = evidence.carried[cell] >= 0;
+    const bool shown = evidence.shown_person[cell] >= 0 && isShown(evidence.shown, cell);
     if (background == Background::agrees || background == Background::farther ||
-        isFlat(evidence, cell) || (distance > kOutside && !carried)) {
+        isFlat(evidence, cell) || (distance > kOutside && !carried && !shown)) {
       outside.add(bins[cell]);
     } else if (candidate >= 0 && evidence.grid.hasDepth(cell) &&
-               (distance < kInside || (carried && background == Background::nearer))) {
+               (distance < kInside || shown || (carried && background == Background::nearer))) {
       inside[candidate].add(bins[cell]);
     }
   }
