@@ -96,11 +96,11 @@ TEST(PersonGroups, JointsAreWhereTheirPeaksAreAndBelongToTheirBody) {
 }
 
 TEST(PersonGroups, AMaskWithoutJointsIsAChair) {
-  for (const int joints : {0, 1}) {
+  for (const int joints : {0, 1, 2}) {
     const People people = Drawn({{{20, 20, 28, 80}, 2.0F, joints}}).group();
     EXPECT_TRUE(people.people.empty());
     EXPECT_EQ(cv::countNonZero(people.mask.owner), 0);
-    EXPECT_EQ(cv::countNonZero(people.mask.probability), 0) << "nor does its mask count";
+    EXPECT_GT(cv::countNonZero(people.mask.probability), 0) << "who is known may be there";
   }
 }
 

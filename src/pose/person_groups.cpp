@@ -13,9 +13,8 @@ namespace pf {
 namespace {
 
 constexpr float kMinMask = 0.4F;        // probability of a cell that has a vote
-constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint at all ...
-constexpr float kSureJoint = 0.3F;      // ... and of one that speaks for a person, who needs
-constexpr int kMinSureJoints = 2;       // so many
+constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint; who has fewer than
+constexpr int kMinJoints = 3;           // so many is nobody
 constexpr int kScoredJoints = 6;        // whose mean is the person's score
 constexpr float kJointReach_m = 0.50F;  // of a joint's vote
 constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is nobody
@@ -118,7 +117,7 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
   }
 }
 
-/// Two joints speak for the person; its score is the mean of the best, which those who have fewer
+/// Three joints speak for the person; its score is the mean of the best, which those who have fewer
 /// miss.
 bool isBelieved(Person& person) {
   std::array<float, kJointCount> p{};
@@ -126,7 +125,7 @@ bool isBelieved(Person& person) {
   std::sort(p.begin(), p.end(), std::greater<>());
   person.score = 0.0F;
   for (int j = 0; j < kScoredJoints; ++j) person.score += p[j] / kScoredJoints;
-  return p[kMinSureJoints - 1] > kSureJoint;
+  return p[kMinJoints - 1] > 0.0F;
 }
 
 /// Group of each person, best first.
@@ -165,7 +164,6 @@ PersonMask maskOf(const PersonMaps& maps, const std::vector<Vote>& votes,
     const auto person = std::find(order.begin(), order.end(), vote.group);
     const int owner = person == order.end() ? 0 : 1 + static_cast<int>(person - order.begin());
     mask.owner.ptr<std::uint8_t>()[vote.cell] = static_cast<std::uint8_t>(owner);
-    if (owner == 0) mask.probability.ptr<std::uint8_t>()[vote.cell] = 0;
   }
   return mask;
 }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kSure = 0.85F;  // probability
 constexpr float kDenied = 0.25F;
-constexpr float kMostFor = 4.0F, kMostAgainst = 3.0F;  // log-odds
-constexpr float kMostAgainstUnshown = 0.7F;            // of people whom the mask does not show
+constexpr float kMostFor = 4.0F, kMostAgainst = 1.5F;  // log-odds
+constexpr float kMostAgainstUnshown = 0.3F;            // of people whom the mask does not show
 constexpr float kFloor = 0.004F;                       // of a probability: a step of the mask
 constexpr std::size_t kRowsAtOnce = 16;
 
