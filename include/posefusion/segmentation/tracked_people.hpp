@@ -32,8 +32,9 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
 /// Puts newly detected people in the place of the carried ones they continue; the others are
-/// added. A detection continues the carried person whose mask holds most of its joints, at least a
-/// third. Joints that the detector missed this time are kept from before.
+/// added, unless a detector that sees every frame is not sure of them. A detection continues the
+/// carried person whose mask holds most of its joints, at least a third. Joints that the detector
+/// missed this time are kept from before.
 void mergeDetections(const People& detected, const SceneGrid& grid,
                      std::vector<TrackedPerson>& people);
 
