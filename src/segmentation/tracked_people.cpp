@@ -11,7 +11,7 @@ constexpr int kMaskSamples = 30;            // points of each person's mask whos
 constexpr float kMaxDeviation = 0.019F;     // of a joint's flow from its person's, in image widths
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints
 constexpr float kMissedJointFading = 0.6F;  // likelihood of a joint that a detection missed ...
-constexpr float kMinNewScore = 0.3F;        // of somebody new where every frame brings a detection
+constexpr float kMinNewScore = 0.4F;        // of somebody new where every frame brings a detection
 constexpr float kFrameFading = 0.93F;       // the same where every frame brings one
 constexpr float kMinKeptLikelihood = 0.1F;  // ... which is kept while it was above this
 
