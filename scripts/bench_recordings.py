@@ -77,7 +77,10 @@ class Recordings(Runs):
             shutil.copyfile(self.options.data / "people_rgbd" / "five_people" / name, folder / name)
         (folder / "associations.txt").write_text("1.0 color.png 1.0 depth.png\n")
         (folder / "camera.yaml").write_text(CAMERA_OF_FIVE_PEOPLE)
-        out, summary = self.run("five_people", folder, *self.network_arguments(), "--save-masks")
-        people = json.loads((out / "people.json").read_text())["frames"][0]["people"]
-        self.fact("five_people, people found", len(people) == 5, str(len(people)))
-        self.row("five_people, masked", 100 * summary["masks"]["mean_part"], "% of pixels", digits=1)
+        for detector, arguments in (("network", self.network_arguments()),
+                                    ("embedded", ("--detector", "embedded"))):
+            out, summary = self.run(f"five_people_{detector}", folder, *arguments, "--save-masks")
+            people = json.loads((out / "people.json").read_text())["frames"][0]["people"]
+            self.fact(f"five_people, {detector}, people found", len(people) == 5, str(len(people)))
+            self.row(f"five_people, {detector}, masked", 100 * summary["masks"]["mean_part"],
+                     "% of pixels", digits=1)

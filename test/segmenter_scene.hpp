@@ -10,6 +10,17 @@ namespace pf {
 
 inline const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
 
+/// Depth of a body that stands at `z_m`, whose pixels are `shape`: it is no board, but round.
+inline void putBody(cv::Mat& depth_m, const cv::Mat& shape, float z_m, int centre_u) {
+  for (int v = 0; v < shape.rows; ++v) {
+    for (int u = 0; u < shape.cols; ++u) {
+      if (shape.at<std::uint8_t>(v, u) == 0) continue;
+      const float aside = static_cast<float>(u - centre_u) * z_m / 110.0F;  // 1: the shoulder
+      depth_m.at<float>(v, u) = z_m + 0.15F * aside * aside;
+    }
+  }
+}
+
 /// A figure before a wall: a torso with a head, 1 m nearer than the wall.
 struct Scene {
   RgbdFrame frame;
@@ -28,7 +39,7 @@ struct Scene {
     };
     cv::rectangle(truth, at(-55, -60), at(55, 170), cv::Scalar(255), cv::FILLED);
     cv::circle(truth, at(0, -95), cvRound(32 * k), cv::Scalar(255), cv::FILLED);
-    depth.setTo(figure_z, truth);
+    putBody(depth, truth, figure_z, centre_u);
     color.setTo(cv::Scalar(30, 60, 120), truth);
     frame = {1, color, depth, 1e-3, kCamera};
     Person person;
@@ -46,17 +57,6 @@ struct Scene {
     people = {1, true, {person}};
   }
 };
-
-/// A body is no board: it is round.
-inline void makeRound(Scene& scene, int centre_u) {
-  for (int v = 0; v < 480; ++v) {
-    for (int u = 0; u < 640; ++u) {
-      if (scene.truth.at<std::uint8_t>(v, u) == 0) continue;
-      const float aside = static_cast<float>(u - centre_u) / 55.0F;
-      scene.frame.depth.at<float>(v, u) += 0.15F * aside * aside;
-    }
-  }
-}
 
 inline double iou(const cv::Mat& a, const cv::Mat& b) {
   return static_cast<double>(cv::countNonZero(a & b)) / std::max(1, cv::countNonZero(a | b));

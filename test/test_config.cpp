@@ -64,7 +64,8 @@ TEST(Config, ErrorsNameTheKeyTheValueAndWhatWasExpected) {
   EXPECT_EQ(assignmentError("tracking.max_distance_m=.nan"),
             "setting: tracking.max_distance_m is nan, expected 0.001 to 10");
   EXPECT_EQ(assignmentError("pose.detector=guess"),
-            "setting: pose.detector is 'guess', expected one of network, recorded, none");
+            "setting: pose.detector is 'guess', expected one of auto, embedded, network, "
+            "network+embedded, recorded, none");
   EXPECT_EQ(assignmentError("speed"), "'speed': expected group.name=value");
 }
 

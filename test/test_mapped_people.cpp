@@ -27,7 +27,6 @@ TEST(MappedPeople, TellsWhereTheMapHoldsAPerson) {
   // Somebody stood still, was missed and mapped; behind is the wall, or nothing within reach.
   for (const float wall_z : {3.0F, 0.0F}) {
     Scene scene(2.0F, 320, wall_z);
-    makeRound(scene, 320);
     scene.room.depth_m = scene.frame.depth;
     const Segmentation result = SegmenterChain().segment(scene.frame, scene.people, &scene.room);
     ASSERT_FALSE(result.in_map_mask.empty()) << wall_z;
@@ -37,7 +36,6 @@ TEST(MappedPeople, TellsWhereTheMapHoldsAPerson) {
   }
   // Surfaces of a few frames only.
   Scene young;
-  makeRound(young, 320);
   young.room.depth_m = young.frame.depth;
   young.room.stable = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
   const Segmentation result = SegmenterChain().segment(young.frame, young.people, &young.room);

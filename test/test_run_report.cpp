@@ -77,6 +77,7 @@ TEST(RunStatistics, MasksAreAveragedOverTheSharpFrames) {
   statistics.add(frameAt(1, FrameOutcome::fused));
   statistics.add(frameAt(2, FrameOutcome::blurred));
   EXPECT_EQ(statistics.masks().with_mask, 1U);
+  EXPECT_EQ(statistics.masks().over_1_percent, 1U);
   EXPECT_DOUBLE_EQ(statistics.masks().mean_part, 0.25);
 }
 
@@ -124,7 +125,7 @@ TEST_F(RunReportTest, SummaryHasTheNamesThatStay) {
   EXPECT_NEAR(s.at("rpe_trans_m_per_s").get<double>(), 0, 1e-9);
   EXPECT_NEAR(s.at("rpe_rot_deg_per_s").get<double>(), 0, 1e-6);
   EXPECT_EQ(s.at("configuration").at("blur").at("enabled"), true);
-  EXPECT_EQ(s.at("configuration").at("pose").at("detector"), "network");
+  EXPECT_EQ(s.at("configuration").at("pose").at("detector"), "auto");
   EXPECT_FALSE(s.at("version").get<std::string>().empty());
 }
 

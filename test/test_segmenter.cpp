@@ -120,6 +120,56 @@ TEST(Segmenter, SeedsOutsideTheImage) {
   segmenter.segment(scene.frame, scene.people, nullptr);
 }
 
+/// The figure's pixels as a detector would show them.
+PersonMask maskOf(const Scene& scene) {
+  PersonMask mask;
+  cv::resize(scene.truth, mask.probability, {80, 60}, 0, 0, cv::INTER_AREA);
+  cv::threshold(mask.probability, mask.owner, 127, 1, cv::THRESH_BINARY);
+  return mask;
+}
+
+TEST(Segmenter, TheDetectorsMaskShowsWhatTheJointsLeaveOut) {
+  Scene scene;
+  auto& joints = scene.people.people[0].joints;
+  for (std::size_t j = 2; j < joints.size(); ++j) joints[j] = Keypoint();           // a head alone
+  cv::rectangle(scene.truth, {265, 300}, {375, 479}, cv::Scalar(255), cv::FILLED);  // legs, hips
+  scene.frame.color.setTo(cv::Scalar(200, 190, 170));  // of the wall's colour
+  putBody(scene.frame.depth, scene.truth, 2.0F, 320);
+  const cv::Mat without = SegmenterChain().segment(scene.frame, scene.people, nullptr).mask;
+  EXPECT_LT(without.empty() ? 0.0 : iou(without, scene.truth), 0.6);
+  scene.people.mask = maskOf(scene);
+  const cv::Mat with = SegmenterChain().segment(scene.frame, scene.people, nullptr).mask;
+  ASSERT_FALSE(with.empty());
+  EXPECT_GT(iou(with, scene.truth), 0.9);
+}
+
+/// A chair hides its sitter from the chest down: hips and the line to them lie on its back.
+TEST(Segmenter, TheBackOfAChairIsNobodys) {
+  for (const bool with_mask : {false, true}) {
+    Scene scene;
+    cv::Mat chair = cv::Mat::zeros(480, 640, CV_8UC1);
+    cv::rectangle(chair, {255, 260}, {385, 400}, cv::Scalar(255), cv::FILLED);
+    if (with_mask) scene.people.mask = maskOf(scene);  // that takes the chair for the person
+    scene.truth.setTo(0, chair);
+    for (int v = 0; v < 480; ++v) {  // it leans
+      scene.frame.depth.row(v).setTo(1.9F - 0.0005F * static_cast<float>(v - 260), chair.row(v));
+    }
+    const Segmentation result = SegmenterChain().segment(scene.frame, scene.people, nullptr);
+    ASSERT_FALSE(result.mask.empty());
+    EXPECT_LT(cv::countNonZero(result.mask & chair), 0.1 * cv::countNonZero(chair)) << with_mask;
+    EXPECT_GT(iou(result.mask, scene.truth), 0.8) << with_mask;
+  }
+}
+
+TEST(Segmenter, WhatTheMapHoldsIsNoPersonWhateverAWeakDetectionShows) {
+  Scene scene;
+  scene.room.depth_m.setTo(2.0F, scene.truth);  // a thing that has always stood there
+  scene.people.mask = maskOf(scene);
+  scene.people.people[0].score = 0.4F;
+  const Segmentation result = SegmenterChain().segment(scene.frame, scene.people, &scene.room);
+  EXPECT_TRUE(result.mask.empty() || iou(result.mask, scene.truth) < 0.05);
+}
+
 TEST(Segmenter, AMirroredSceneHasAMirroredMask) {
   Scene scene(2.0F, 260);
   const Segmentation straight = SegmenterChain().segment(scene.frame, scene.people, nullptr);

@@ -69,7 +69,6 @@ TEST(TrackedPeople, WithoutAMapFurnitureIsNotMaskedForLong) {
   cv::rectangle(chair, {210, 130}, {430, 479}, cv::Scalar(255), cv::FILLED);
   armchair.frame.depth.setTo(2.0F, chair);
   armchair.frame.color.setTo(cv::Scalar(30, 60, 120), chair);
-  makeRound(armchair, 320);
   int masked_frames = 0;
   for (int i = 0; i < 30; ++i) {
     armchair.frame.stamp_ns = 2 + i;

@@ -18,6 +18,7 @@ namespace posefusion_ros {
 // What the stages say to each other and to users, as messages.
 
 PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header);
+/// The mask is a view of the message's bytes.
 pf::People fromMessage(const PeopleMsg& message);
 
 /// `header` is that of the later frame's colour image.

@@ -21,9 +21,9 @@ namespace posefusion_ros {
 using sensor_msgs::CameraInfo;
 using sensor_msgs::Image;
 
-/// Finds people in sharp frames. The network is loaded and run in a worker. Live, frames that came
-/// while it was busy are passed on as not detected, so that it always sees the newest one;
-/// lossless, each frame is given to the detector, which looks at every n-th.
+/// Finds people in sharp frames. Networks are loaded and run in a worker. Live, the pose network is
+/// spared the frames that came while it was busy, so that it always sees the newest one; lossless,
+/// each frame is given to the detector, which shows the network every n-th.
 class PoseDetectorNodelet : public ChainNodelet {
  public:
   ~PoseDetectorNodelet() override { stopWaiting(); }
@@ -80,8 +80,8 @@ class PoseDetectorNodelet : public ChainNodelet {
       pf::RecordedPeople recorded;
       if (config_.detector == "recorded") recorded = recordedPeople();
       detector_ = pf::makePoseDetector(config_, std::move(recorded));
-      watch().set("detector", config_.detector);
-      NODELET_INFO("pose detector ready (%s)", config_.detector.c_str());
+      watch().set("detector", pf::chosenDetector(config_));
+      NODELET_INFO("pose detector ready (%s)", pf::chosenDetector(config_).c_str());
     } catch (const std::exception& error) {
       no_detector_ = error.what();
       watch().tell(diagnostic_msgs::DiagnosticStatus::ERROR, "no detector: " + no_detector_);
@@ -122,11 +122,8 @@ class PoseDetectorNodelet : public ChainNodelet {
       return;
     }
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
-    pf::People people;
-    people.stamp_ns = frame.stamp_ns;
-    const bool newer_waits = worker_->waiting() > 0;
-    if (lossless_ || !newer_waits || config_.detector != "network")
-      people = detector_->detect(frame);
+    const bool haste = !lossless_ && worker_->waiting() > 0;
+    const pf::People people = haste ? detector_->detectInHaste(frame) : detector_->detect(frame);
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (!people_) {
       reject(color->header, TrackingStatusMsg::DROPPED, "dropped: the chain is still starting");

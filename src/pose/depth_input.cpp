@@ -31,6 +31,16 @@ int widest(const std::vector<int>& borders) {
   return most;
 }
 
+/// The smaller one of each pair into `low`.
+POSEFUSION_SIMD_CLONES
+void order(float* low, float* high) {
+  for (int i = 0; i < kDepthInputWidth; ++i) {
+    const float a = low[i], b = high[i];
+    low[i] = b < a ? b : a;
+    high[i] = b < a ? a : b;
+  }
+}
+
 /// A row of cells: value k of all cells side by side, so that all are sorted at once.
 class CellRow {
  public:
@@ -77,14 +87,6 @@ class CellRow {
 
  private:
   float* lane(int value) { return &data_[static_cast<std::size_t>(value) * kDepthInputWidth]; }
-
-  static void order(float* low, float* high) {
-    for (int i = 0; i < kDepthInputWidth; ++i) {
-      const float a = low[i], b = high[i];
-      low[i] = b < a ? b : a;
-      high[i] = b < a ? a : b;
-    }
-  }
 
   int values_;
   std::vector<float> data_;

@@ -8,6 +8,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/pose/network_layers.hpp"
 
 namespace pf {
 namespace {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAdvice =
     "; fetch one with scripts/get_models, name another with pose.model, or choose pose.detector "
-    "recorded or none";
+    "embedded, recorded or none";
 
 void requireReadable(const std::string& path) {
   if (!fs::is_regular_file(path) || !std::ifstream(path)) {
@@ -50,6 +51,7 @@ void requireKnownEnding(const std::string& path) {
 
 struct PoseNetwork::Backend {
   cv::dnn::Net net;
+  cv::Size size;  // of the input that the net has seen
   cv::Mat input;
   cv::Mat output;
 };
@@ -60,16 +62,19 @@ PoseNetwork::PoseNetwork(const std::string& model_path, int input_height_px)
   requireReadable(model_path_);
   settings_ = loadModelSettings(findModelSettings(model_path_));
   if (input_height_px > 0) settings_.input_height_px = input_height_px;
+  read();
+}
+
+void PoseNetwork::read() {
   try {
-    backend_->net = readNet(model_path_, settings_);
+    backend_->net = readWithFastLayers([this] { return readNet(model_path_, settings_); });
   } catch (const cv::Exception& error) {
     throw InputError("pose.model: " + model_path_ + " is no network that OpenCV can read (" +
                      error.err + ")" + kAdvice);
   }
-  // With fusion on, OpenCV 4.6 computes nonsense after the input's shape has changed once.
-  backend_->net.enableFusion(false);
   backend_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
   backend_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+  backend_->size = cv::Size();
 }
 
 PoseNetwork::~PoseNetwork() = default;
@@ -85,9 +90,14 @@ cv::Size PoseNetwork::inputSize(const cv::Size& image) const {
 
 PoseMaps PoseNetwork::infer(const cv::Mat& color) {
   const cv::Scalar mean(settings_.mean[0], settings_.mean[1], settings_.mean[2]);
+  const cv::Size size = inputSize(color.size());
+  // Its layers are fused (OpenCV's default): after that OpenCV 4.6 computes nonsense for any other
+  // shape of the input.
+  if (!backend_->size.empty() && size != backend_->size) read();
+  backend_->size = size;
   try {
-    cv::dnn::blobFromImage(color, backend_->input, settings_.scale, inputSize(color.size()), mean,
-                           settings_.bgr, false, CV_32F);
+    cv::dnn::blobFromImage(color, backend_->input, settings_.scale, size, mean, settings_.bgr,
+                           false, CV_32F);
     backend_->net.setInput(backend_->input);
     backend_->output = backend_->net.forward();
   } catch (const cv::Exception& error) {

@@ -5,16 +5,39 @@
 #include <boost/make_shared.hpp>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/pose/person_mask.hpp"
 #include "posefusion_ros/conversions.hpp"
 
 namespace posefusion_ros {
 
 using pf::InputError;
 
+namespace {
+
+std::vector<std::uint8_t> bytesOf(const cv::Mat& cells) {
+  return cells.empty() ? std::vector<std::uint8_t>()
+                       : std::vector<std::uint8_t>(cells.reshape(1, 1));
+}
+
+/// View of the message's bytes.
+cv::Mat cellsOf(const std::vector<std::uint8_t>& bytes, const char* name) {
+  if (bytes.empty()) return {};
+  const std::size_t cells = static_cast<std::size_t>(pf::kMaskWidth) * pf::kMaskHeight;
+  if (bytes.size() != cells) {
+    throw InputError("people: " + std::string(name) + " has " + std::to_string(bytes.size()) +
+                     " cells, expected 80x60 or none");
+  }
+  return {pf::kMaskHeight, pf::kMaskWidth, CV_8UC1, const_cast<std::uint8_t*>(bytes.data())};
+}
+
+}  // namespace
+
 PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header) {
   PeopleMsg message;
   message.header = header;
   message.detected = static_cast<unsigned char>(people.detected);
+  message.mask = bytesOf(people.mask.probability);
+  message.mask_owner = bytesOf(people.mask.owner);
   message.people.resize(people.people.size());
   for (std::size_t i = 0; i < people.people.size(); ++i) {
     const pf::Person& from = people.people[i];
@@ -33,6 +56,10 @@ pf::People fromMessage(const PeopleMsg& message) {
   pf::People people;
   people.stamp_ns = toNs(message.header.stamp);
   people.detected = message.detected != 0;
+  people.mask = {cellsOf(message.mask, "mask"), cellsOf(message.mask_owner, "mask_owner")};
+  if (people.mask.probability.size() != people.mask.owner.size()) {
+    throw InputError("people: mask and mask_owner, expected both or none");
+  }
   people.people.resize(message.people.size());
   for (std::size_t i = 0; i < message.people.size(); ++i) {
     people.people[i].score = message.people[i].score;

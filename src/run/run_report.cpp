@@ -115,7 +115,9 @@ std::string RunReport::summary(std::size_t surfels) const {
   ordered_json out;
   out["version"] = POSEFUSION_VERSION;
   out["frames"] = framesJson(statistics_.frames());
-  out["masks"] = {{"frames", masks.with_mask}, {"mean_part", masks.mean_part}};
+  out["masks"] = {{"frames", masks.with_mask},
+                  {"frames_over_1_percent", masks.over_1_percent},
+                  {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
   if (!ran_elsewhere_) out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();

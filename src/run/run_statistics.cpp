@@ -59,7 +59,9 @@ void RunStatistics::addMask(const ProcessedFrame& frame) {
   const int pixels = mask.empty() ? 0 : cv::countNonZero(mask);
   if (pixels == 0) return;
   ++masks_.with_mask;
-  mask_part_sum_ += static_cast<double>(pixels) / static_cast<double>(mask.total());
+  const double part = static_cast<double>(pixels) / static_cast<double>(mask.total());
+  masks_.over_1_percent += part > 0.01;
+  mask_part_sum_ += part;
 }
 
 void RunStatistics::addTimes(const ProcessedFrame& frame) {

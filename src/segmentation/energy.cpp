@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "posefusion/segmentation/mapped_people.hpp"
+
 namespace pf {
 namespace {
 
@@ -10,6 +12,7 @@ namespace {
 constexpr float kInside = 1.0F;           // nearer: surely the person's colours
 constexpr float kOutside = 2.5F;          // farther: surely not
 constexpr float kFarthestInFront = 2.5F;  // a cell before the map counts as no farther than this
+constexpr float kFarthestShown = 1.5F;    // and one that the detector's mask shows, than this
 
 // Colour: the logarithm of a ratio of likelihoods, and how histograms are learnt.
 constexpr float kColorLimit = 3.0F;
@@ -24,16 +27,11 @@ constexpr float kAgreesWithMap = -2.0F;
 
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
+constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth tells less ...
 constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
-
-/// The person that a cell could belong to, -1: none.
-int candidateOf(const Evidence& evidence, int cell) {
-  const int owner = evidence.distance.owner[cell];
-  return owner >= 0 ? owner : evidence.carried[cell];
-}
 
 /// What the map says of a cell, unless its candidate is known to be in the map by mistake.
 Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerson>& people,
@@ -45,7 +43,7 @@ Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerso
   // Next to a joint that was seen just now, the skeleton knows better than a young surface.
   const bool too_young = background == Background::recent && people[candidate].fresh &&
                          evidence.distance.relative[cell] < kInside;
-  if (in_map || too_young) return Background::unknown;
+  if (in_map || too_young || isMappedPerson(evidence, people, cell)) return Background::unknown;
   return background;
 }
 
@@ -59,11 +57,12 @@ ColorHistogram learnColors(const Evidence& evidence, const std::vector<int>& bin
     const Background background = backgroundOf(evidence, people, cell);
     const int candidate = candidateOf(evidence, cell);
     const bool carried = evidence.carried[cell] >= 0;
+    const bool shown = evidence.shown_person[cell] >= 0 && isShown(evidence.shown, cell);
     if (background == Background::agrees || background == Background::farther ||
-        isFlat(evidence, cell) || (distance > kOutside && !carried)) {
+        isFlat(evidence, cell) || (distance > kOutside && !carried && !shown)) {
       outside.add(bins[cell]);
     } else if (candidate >= 0 && evidence.grid.hasDepth(cell) &&
-               (distance < kInside || (carried && background == Background::nearer))) {
+               (distance < kInside || shown || (carried && background == Background::nearer))) {
       inside[candidate].add(bins[cell]);
     }
   }
@@ -93,8 +92,16 @@ float modelTerm(Background background) {
 
 }  // namespace
 
+int candidateOf(const Evidence& evidence, int cell) {
+  if (evidence.shown_person[cell] >= 0) return evidence.shown_person[cell];
+  const int owner = evidence.distance.owner[cell];
+  return owner >= 0 ? owner : evidence.carried[cell];
+}
+
 bool isFlat(const Evidence& evidence, int cell) {
-  return evidence.on_plane[cell] != 0 && evidence.background[cell] != Background::nearer;
+  const Flatness flatness = evidence.flatness[cell];
+  if (flatness == Flatness::small) return true;
+  return flatness == Flatness::large && evidence.background[cell] != Background::nearer;
 }
 
 void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
@@ -102,6 +109,7 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
   const SceneGrid& grid = evidence.grid;
   const float color_weight = static_cast<float>(config.color_weight);
   const float model_weight = static_cast<float>(config.model_weight);
+  const float mask_weight = static_cast<float>(config.mask_weight);
   std::vector<int> bins(grid.size());
   for (int cell = 0; cell < grid.size(); ++cell) {
     bins[cell] =
@@ -115,17 +123,22 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
     const bool in_front = background == Background::nearer;
     if (candidate < 0 && !in_front) continue;
     // Far from the skeleton only what stands before the map can be a person: an unseen leg.
-    const float farthest = in_front ? kFarthestInFront : kDistanceLimit;
+    const float farthest = evidence.shown_person[cell] >= 0 ? kFarthestShown
+                           : in_front                       ? kFarthestInFront
+                                                            : kDistanceLimit;
     float value = 1.0F - std::min(evidence.distance.relative[cell], farthest);
     if (candidate >= 0) {
       value += color_weight *
                logLikelihoodRatio(people[candidate].color, outside, bins[cell], kColorLimit);
     }
     value += model_weight * modelTerm(background);
+    const bool is_shown = candidate >= 0 && !people[candidate].body.shown.empty();
+    value += mask_weight * shownTerm(evidence.shown, cell, is_shown);
     if (isFlat(evidence, cell)) value += kOnPlane;
     if (evidence.carried[cell] >= 0 && background != Background::agrees) {
       value += in_front ? kCarriedInFront : kCarried;
     }
+    if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
     unary[cell] = value;
   }

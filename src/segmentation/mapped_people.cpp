@@ -10,7 +10,10 @@ constexpr int kSureJoints = 5;
 constexpr float kSureScore = 0.55F;   // of the detection
 constexpr float kMappedReach = 1.5F;  // capsule radii within which a surface is the person's
 
-bool isMapped(const Evidence& evidence, const TrackedPerson& tracked, int cell) {
+bool isMapped(const Evidence& evidence, const std::vector<TrackedPerson>& people, int owner,
+              int cell) {
+  const TrackedPerson& tracked = people[owner];
+  if (isMappedPerson(evidence, people, cell)) return true;
   if (isFlat(evidence, cell) || evidence.distance.relative[cell] > kMappedReach) return false;
   const Background background = evidence.background[cell];
   if (background == Background::agrees) return tracked.in_map;
@@ -19,6 +22,14 @@ bool isMapped(const Evidence& evidence, const TrackedPerson& tracked, int cell) 
 }
 
 }  // namespace
+
+bool isMappedPerson(const Evidence& evidence, const std::vector<TrackedPerson>& people, int cell) {
+  const int shown = evidence.shown_person[cell];
+  if (shown < 0 || !isShown(evidence.shown, cell) || isFlat(evidence, cell)) return false;
+  const Background background = evidence.background[cell];
+  return (background == Background::agrees || background == Background::recent) &&
+         people[shown].fresh && isSure(people[shown].person);
+}
 
 bool isSure(const Person& person) {
   const auto joints = std::count_if(person.joints.begin(), person.joints.end(),
@@ -31,8 +42,8 @@ std::vector<std::uint8_t> findMappedPeople(const Evidence& evidence,
                                            const std::vector<std::uint8_t>& labels) {
   std::vector<std::uint8_t> mapped(labels.size(), 0);
   for (int cell = 0; cell < evidence.grid.size(); ++cell) {
-    const int owner = evidence.distance.owner[cell];
-    mapped[cell] = labels[cell] != 0 && owner >= 0 && isMapped(evidence, people[owner], cell);
+    const int owner = candidateOf(evidence, cell);
+    mapped[cell] = labels[cell] != 0 && owner >= 0 && isMapped(evidence, people, owner, cell);
   }
   return mapped;
 }

@@ -11,13 +11,25 @@
 namespace pf {
 namespace {
 
-constexpr int kPatch = 8;                  // cells along the side of a patch
-constexpr float kTolerance = 0.006F;       // of inverse depth, 1/m: 2.4 cm at 2 m
 constexpr float kMaxPatchError = 0.004F;   // rms of a patch's own fit, 1/m
 constexpr double kMinFilled = 0.7;         // of a patch's cells have depth
 constexpr double kMinInverseDepth = 0.05;  // 1/m, of a patch whose size is measured
-constexpr int kMinPatches = 12;            // of a large plane
-constexpr double kMinArea_m2 = 0.35;       // as seen face on: more than a back
+
+/// What counts as one plane.
+struct PlaneLimits {
+  int patch;        ///< cells along the side of a patch
+  float tolerance;  ///< of inverse depth, 1/m
+  int min_patches;
+  double min_area_m2;  ///< as seen face on
+  double min_side_m;   ///< of the box around it in the image: a strip of a body may be flat
+  double max_error;    ///< rms of the fit to all of it, 1/m
+};
+
+// Larger than a back; 2.4 cm at 2 m.
+constexpr PlaneLimits kLarge{8, 0.006F, 12, 0.35, 0.0, 1.0};
+// Of simulated backs and chests this large none is so flat, of backs of chairs nearly all: what is
+// left of those is the sensor's noise.
+constexpr PlaneLimits kSmall{6, 0.003F, 8, 0.09, 0.25, 0.0023};
 
 /// Sums from which a plane is fitted to inverse depths at (u, v), least squares.
 struct Moments {
@@ -56,6 +68,7 @@ struct Patch {
 }  // namespace
 
 struct PlaneFinder::State {
+  PlaneLimits limits = kLarge;
   int cols = 0, rows = 0;  ///< of patches
   std::vector<Patch> patches;
   std::vector<float> inverse_depth;  ///< of cells, 0 = none
@@ -67,8 +80,11 @@ struct PlaneFinder::State {
   void fitPatches(const SceneGrid& grid);
   void fitPatch(const SceneGrid& grid, int index);
   void growRegion(int start);
-  bool isLarge(const SceneGrid& grid) const;
-  void mark(const SceneGrid& grid, int index, std::vector<std::uint8_t>& on_plane) const;
+  bool isPlane(const SceneGrid& grid) const;
+  void mark(const SceneGrid& grid, int index, Flatness flatness,
+            std::vector<Flatness>& result) const;
+  void find(const SceneGrid& grid, const PlaneLimits& wanted, Flatness flatness,
+            std::vector<Flatness>& result);
 };
 
 PlaneFinder::PlaneFinder() : state_(std::make_unique<State>()) {}
@@ -76,23 +92,23 @@ PlaneFinder::~PlaneFinder() = default;
 
 void PlaneFinder::State::fitPatch(const SceneGrid& grid, int index) {
   Patch& patch = patches[index];
-  const int u0 = index % cols * kPatch, v0 = index / cols * kPatch;
-  for (int v = v0; v < v0 + kPatch; ++v) {
-    for (int u = u0; u < u0 + kPatch; ++u) {
+  const int u0 = index % cols * limits.patch, v0 = index / cols * limits.patch;
+  for (int v = v0; v < v0 + limits.patch; ++v) {
+    for (int u = u0; u < u0 + limits.patch; ++u) {
       const float w = inverse_depth[v * grid.cols + u];
       if (w > 0.0F) patch.moments.add(u, v, w);
     }
   }
-  if (patch.moments.count < kMinFilled * kPatch * kPatch) return;
+  if (patch.moments.count < kMinFilled * limits.patch * limits.patch) return;
   const Eigen::Vector3d fit = patch.moments.plane();
-  patch.centre = {u0 + 0.5 * (kPatch - 1), v0 + 0.5 * (kPatch - 1), 1.0};
+  patch.centre = {u0 + 0.5 * (limits.patch - 1), v0 + 0.5 * (limits.patch - 1), 1.0};
   patch.inverse_depth = fit.dot(patch.centre);
   patch.error = patch.moments.rms(fit);
 }
 
 void PlaneFinder::State::fitPatches(const SceneGrid& grid) {
-  cols = grid.cols / kPatch;
-  rows = grid.rows / kPatch;
+  cols = grid.cols / limits.patch;
+  rows = grid.rows / limits.patch;
   inverse_depth.resize(grid.size());
   for (int cell = 0; cell < grid.size(); ++cell) {
     inverse_depth[cell] = grid.hasDepth(cell) ? 1.0F / grid.z[cell] : 0.0F;
@@ -119,7 +135,7 @@ void PlaneFinder::State::growRegion(int start) {
       const int index = row * cols + col;
       const Patch& patch = patches[index];
       if (taken[index] != 0 || patch.error > kMaxPatchError) continue;
-      if (std::abs(plane.dot(patch.centre) - patch.inverse_depth) > kTolerance) continue;
+      if (std::abs(plane.dot(patch.centre) - patch.inverse_depth) > limits.tolerance) continue;
       taken[index] = 1;
       members.push_back(index);
       sum += patch.moments;
@@ -128,46 +144,61 @@ void PlaneFinder::State::growRegion(int start) {
   }
 }
 
-bool PlaneFinder::State::isLarge(const SceneGrid& grid) const {
-  if (static_cast<int>(members.size()) < kMinPatches) return false;
-  double area_m2 = 0;
+bool PlaneFinder::State::isPlane(const SceneGrid& grid) const {
+  if (static_cast<int>(members.size()) < limits.min_patches) return false;
+  Moments sum;
+  double area_m2 = 0, side_m = 0;
+  int left = cols, right = 0, top = rows, bottom = 0;
   for (int index : members) {
-    const double side_m =
-        kPatch * grid.spacing / std::max(kMinInverseDepth, patches[index].inverse_depth);
+    sum += patches[index].moments;
+    side_m = limits.patch * grid.spacing / std::max(kMinInverseDepth, patches[index].inverse_depth);
     area_m2 += side_m * side_m;
+    left = std::min(left, index % cols);
+    right = std::max(right, index % cols);
+    top = std::min(top, index / cols);
+    bottom = std::max(bottom, index / cols);
   }
-  return area_m2 > kMinArea_m2;
+  const double least_side_m = side_m * (1 + std::min(right - left, bottom - top));
+  return area_m2 > limits.min_area_m2 && least_side_m > limits.min_side_m &&
+         sum.rms(plane) < limits.max_error;
 }
 
 /// Marks the cells of the plane in a patch and in the ring around it: the border patches of a
 /// region mix two surfaces and did not join.
-void PlaneFinder::State::mark(const SceneGrid& grid, int index,
-                              std::vector<std::uint8_t>& on_plane) const {
-  const int u0 = std::max(0, (index % cols - 1) * kPatch);
-  const int v0 = std::max(0, (index / cols - 1) * kPatch);
-  const int u1 = std::min(grid.cols, (index % cols + 2) * kPatch);
-  const int v1 = std::min(grid.rows, (index / cols + 2) * kPatch);
+void PlaneFinder::State::mark(const SceneGrid& grid, int index, Flatness flatness,
+                              std::vector<Flatness>& result) const {
+  const int u0 = std::max(0, (index % cols - 1) * limits.patch);
+  const int v0 = std::max(0, (index / cols - 1) * limits.patch);
+  const int u1 = std::min(grid.cols, (index % cols + 2) * limits.patch);
+  const int v1 = std::min(grid.rows, (index / cols + 2) * limits.patch);
   for (int v = v0; v < v1; ++v) {
     for (int u = u0; u < u1; ++u) {
       const int cell = v * grid.cols + u;
       const double predicted = plane.x() * u + plane.y() * v + plane.z();
-      if (inverse_depth[cell] > 0.0F && std::abs(predicted - inverse_depth[cell]) < kTolerance) {
-        on_plane[cell] = 1;
+      if (inverse_depth[cell] > 0.0F &&
+          std::abs(predicted - inverse_depth[cell]) < limits.tolerance) {
+        result[cell] = flatness;
       }
     }
   }
 }
 
-void PlaneFinder::find(const SceneGrid& grid, std::vector<std::uint8_t>& on_plane) {
-  State& s = *state_;
-  on_plane.assign(grid.size(), 0);
-  s.fitPatches(grid);
-  for (int start : s.order) {
-    if (s.taken[start] != 0 || s.patches[start].error > kMaxPatchError) continue;
-    s.growRegion(start);
-    if (!s.isLarge(grid)) continue;
-    for (int index : s.members) s.mark(grid, index, on_plane);
+void PlaneFinder::State::find(const SceneGrid& grid, const PlaneLimits& wanted, Flatness flatness,
+                              std::vector<Flatness>& result) {
+  limits = wanted;
+  fitPatches(grid);
+  for (int start : order) {
+    if (taken[start] != 0 || patches[start].error > kMaxPatchError) continue;
+    growRegion(start);
+    if (!isPlane(grid)) continue;
+    for (int index : members) mark(grid, index, flatness, result);
   }
+}
+
+void PlaneFinder::find(const SceneGrid& grid, std::vector<Flatness>& result) {
+  result.assign(grid.size(), Flatness::none);
+  state_->find(grid, kSmall, Flatness::small, result);
+  state_->find(grid, kLarge, Flatness::large, result);
 }
 
 }  // namespace pf

@@ -7,6 +7,7 @@
 
 #include "posefusion/segmentation/cut_grid.hpp"
 #include "posefusion/segmentation/energy.hpp"
+#include "posefusion/segmentation/location.hpp"
 #include "posefusion/segmentation/mapped_people.hpp"
 #include "posefusion/segmentation/paper_cut.hpp"
 #include "posefusion/segmentation/planes.hpp"
@@ -17,15 +18,8 @@ namespace {
 
 constexpr double kMinDepth_m = 0.25;
 constexpr double kMaxDepth_m = 8.0;
-constexpr std::size_t kMinMaskCells = 12;  // a smaller mask is nobody
-constexpr float kMaxMaskSpread_m = 0.4F;   // in depth, of a carried mask around its person
 constexpr float kUnlabelledFading = 0.6F;  // of the likelihood of joints outside the mask ...
 constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
-
-// A person who is part of the map by mistake.
-constexpr double kInMapFrames = 10;     // for so long after a sure detection
-constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
-constexpr float kInMapPart = 0.6F;      // ... this part agrees, for a person to be in the map
 
 // How much each frame without a detection ages a carried person.
 constexpr double kAgeing = 1.0;
@@ -47,21 +41,6 @@ void fadeLostJoints(const SceneGrid& grid, const std::vector<std::uint8_t>& labe
   }
 }
 
-/// Number of cells on which the map has a say, with which it agrees, and which stand before it.
-struct MapVote {
-  float known = 0, agrees = 0, nearer = 0;
-};
-
-MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background) {
-  MapVote vote;
-  for (int cell : cells) {
-    vote.known += background[cell] != Background::unknown;
-    vote.agrees += background[cell] == Background::agrees;
-    vote.nearer += background[cell] == Background::nearer;
-  }
-  return vote;
-}
-
 }  // namespace
 
 struct PeopleSegmenter::State {
@@ -76,10 +55,9 @@ struct PeopleSegmenter::State {
   std::vector<std::uint8_t> labels;
 
   void takeGrid(const RgbdFrame& frame, int grid_width);
-  std::vector<int> cellsBeforeMap(const TrackedPerson& tracked) const;
-  bool lift(TrackedPerson& tracked, int carry_frames) const;
   void locate(int carry_frames);
   void markCarriedMasks();
+  void markShownPeople();
   void cut(const SegmentationConfig& config);
   void keepPeople(bool with_map);
   cv::Mat inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const;
@@ -100,45 +78,10 @@ void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
   if (sizeOf(evidence.grid) != last) people.clear();
 }
 
-/// Cells of the carried mask, at the person's depth, that lie in front of the known background.
-std::vector<int> PeopleSegmenter::State::cellsBeforeMap(const TrackedPerson& tracked) const {
-  std::vector<int> cells;
-  for (int cell : tracked.cells) {
-    if (evidence.background[cell] == Background::nearer &&
-        std::abs(evidence.grid.z[cell] - tracked.depth_m) < kMaxMaskSpread_m) {
-      cells.push_back(cell);
-    }
-  }
-  return cells;
-}
-
-/// Lifts a person into the scene. False: no place is found, or it is a thing that the map holds.
-bool PeopleSegmenter::State::lift(TrackedPerson& tracked, int carry_frames) const {
-  tracked.body = liftPerson(tracked.person, evidence.grid, tracked.fresh ? 0.0F : tracked.depth_m);
-  Body& body = tracked.body;
-  const MapVote vote = voteOf(body.seeds, evidence.background);
-  const bool in_map = vote.known >= kMinKnownSeeds && vote.agrees > kInMapPart * vote.known;
-  if (tracked.fresh) tracked.in_map = in_map && isSure(tracked.person);
-  if (tracked.unseen > kInMapFrames) tracked.in_map = false;
-  if (in_map && tracked.fresh && !tracked.in_map) return false;
-  if (!tracked.in_map) {
-    const auto agrees = [&](int cell) { return evidence.background[cell] == Background::agrees; };
-    body.seeds.erase(std::remove_if(body.seeds.begin(), body.seeds.end(), agrees),
-                     body.seeds.end());
-  }
-  body.anchors = cellsBeforeMap(tracked);
-  if (tracked.unseen > carry_frames) return false;
-  if (body.seeds.empty() && body.anchors.size() < kMinMaskCells) return false;
-  if (body.depth_m <= 0.0F) body.depth_m = tracked.depth_m;
-  body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
-  tracked.depth_m = body.depth_m;
-  return true;
-}
-
 void PeopleSegmenter::State::locate(int carry_frames) {
   std::vector<TrackedPerson> located;
   for (TrackedPerson& tracked : people) {
-    if (lift(tracked, carry_frames)) located.push_back(std::move(tracked));
+    if (locatePerson(evidence, carry_frames, tracked)) located.push_back(std::move(tracked));
   }
   people.swap(located);
 }
@@ -155,10 +98,26 @@ void PeopleSegmenter::State::markCarriedMasks() {
   }
 }
 
+void PeopleSegmenter::State::markShownPeople() {
+  evidence.shown_person.assign(evidence.grid.size(), -1);
+  if (evidence.shown.empty()) return;
+  std::vector<std::int16_t> of_detection(people.size(), -1);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const auto detection = static_cast<std::size_t>(std::max(0, people[i].detection));
+    if (detection >= of_detection.size()) of_detection.resize(detection + 1, -1);
+    if (people[i].detection >= 0) of_detection[detection] = static_cast<std::int16_t>(i);
+  }
+  for (int cell = 0; cell < evidence.grid.size(); ++cell) {
+    const int detection = evidence.shown.detection[cell];
+    if (detection < 0 || detection >= static_cast<int>(of_detection.size())) continue;
+    evidence.shown_person[cell] = of_detection[static_cast<std::size_t>(detection)];
+  }
+}
+
 void PeopleSegmenter::State::cut(const SegmentationConfig& config) {
   markCarriedMasks();
+  markShownPeople();
   measureDistance(people, evidence.grid, kDistanceLimit, evidence.distance);
-  planes.find(evidence.grid, evidence.on_plane);
   improvedUnary(evidence, config, people, unary);
   cutter.cut(evidence.grid, unary, config, labels);
   keepAnchoredRegions(evidence.grid, people, labels);
@@ -169,8 +128,7 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
   for (TrackedPerson& tracked : people) tracked.cells.clear();
   for (int cell = 0; cell < evidence.grid.size(); ++cell) {
     if (labels[cell] == 0) continue;
-    int owner = evidence.distance.owner[cell];
-    if (owner < 0) owner = evidence.carried[cell];
+    const int owner = candidateOf(evidence, cell);
     if (owner >= 0) people[owner].cells.push_back(cell);
   }
   for (TrackedPerson& tracked : people) {
@@ -213,10 +171,12 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   s.takeGrid(frame, config_.grid_width);
   carryPeople(flow, s.evidence.grid, s.people);
   mergeDetections(people, s.evidence.grid, s.people);
+  sampleMask(people.mask, frame.depth.size(), s.evidence.grid, s.evidence.shown);
   s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
     compareWithModel(s.evidence.grid, *background, T_view_camera, s.evidence.background);
   }
+  s.planes.find(s.evidence.grid, s.evidence.flatness);
   s.locate(config_.carry_frames);
   if (s.people.empty()) return result;
   s.cut(config_);

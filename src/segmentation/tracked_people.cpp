@@ -11,6 +11,8 @@ constexpr int kMaskSamples = 30;            // points of each person's mask whos
 constexpr float kMaxDeviation = 0.019F;     // of a joint's flow from its person's, in image widths
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints
 constexpr float kMissedJointFading = 0.6F;  // likelihood of a joint that a detection missed ...
+constexpr float kMinNewScore = 0.4F;        // of somebody new where every frame brings a detection
+constexpr float kFrameFading = 0.93F;       // the same where every frame brings one
 constexpr float kMinKeptLikelihood = 0.1F;  // ... which is kept while it was above this
 
 float medianOf(std::vector<float>& values) {
@@ -110,14 +112,18 @@ int findContinued(const Person& detected, const SceneGrid& grid, const std::vect
   return best;
 }
 
-/// Kept joints fade, so that they go after a few detections without them.
-void continuePerson(const Person& detected, TrackedPerson& tracked) {
+/// Kept joints fade, so that they go after a few detections without them. Where detections come
+/// with every frame, a joint that was seen better not long ago is kept too.
+void continuePerson(const Person& detected, bool with_every_frame, TrackedPerson& tracked) {
   const Person old = tracked.person;
   tracked.person = detected;
   for (int j = 0; j < kJointCount; ++j) {
-    if (detected.joints[j].p > 0.0F || old.joints[j].p <= kMinKeptLikelihood) continue;
+    const float kept = old.joints[j].p * (with_every_frame ? kFrameFading : kMissedJointFading);
+    const bool is_better = with_every_frame && kept > detected.joints[j].p;
+    if (detected.joints[j].p > 0.0F && !is_better) continue;
+    if (old.joints[j].p <= kMinKeptLikelihood) continue;
     tracked.person.joints[j] = old.joints[j];
-    tracked.person.joints[j].p *= kMissedJointFading;
+    tracked.person.joints[j].p = kept;
   }
 }
 
@@ -128,6 +134,7 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
   const float max_deviation_px = kMaxDeviation * static_cast<float>(grid.step * grid.cols);
   for (TrackedPerson& tracked : people) {
     tracked.fresh = false;
+    tracked.detection = -1;
     PersonPoints points = pointsOf(tracked, grid);
     if (points.before.empty()) continue;
     follow(flow, points);
@@ -143,17 +150,20 @@ void mergeDetections(const People& detected, const SceneGrid& grid,
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (int cell : people[i].cells) holder[cell] = static_cast<int>(i);
   }
-  for (Person person : detected.people) {
+  for (std::size_t i = 0; i < detected.people.size(); ++i) {
+    Person person = detected.people[i];
     dropJointsOutside(grid, person);
     const int continued = findContinued(person, grid, holder, people);
+    if (continued < 0 && !detected.mask.empty() && person.score < kMinNewScore) continue;
     if (continued < 0) {
       people.emplace_back();
       people.back().person = person;
     } else {
-      continuePerson(person, people[continued]);
+      continuePerson(person, !detected.mask.empty(), people[continued]);
     }
     TrackedPerson& tracked = continued < 0 ? people.back() : people[continued];
     tracked.fresh = true;
+    tracked.detection = static_cast<int>(i);
     tracked.unseen = 0.0;
   }
 }

@@ -106,7 +106,10 @@ pf::Config configOf(const Given& given) {
 }
 
 /// A large network takes seconds to load: where there is a file, the nodelet finds out.
-void checkNetwork(const pf::PoseConfig& config) {
+void checkDetector(const pf::PoseConfig& config) {
+  const std::string detector = pf::chosenDetector(config);
+  if (detector == "embedded") pf::makePoseDetector(config, {});
+  if (detector != "network" && detector != "network+embedded") return;
   const std::string model = config.model.empty() ? pf::defaultModelPath() : config.model;
   if (!fs::exists(model)) pf::makePoseDetector(config, {});
   pf::findModelSettings(model);
@@ -149,9 +152,7 @@ void check(const std::string& launch_file, const Given& given) {
   checkArguments(launch_file);
   given.checkFlags(given["flags"]);
   const pf::Config config = configOf(given);
-  if (config.pose.detector == "network" && given["without_people_if_no_detector"] != "true") {
-    checkNetwork(config.pose);
-  }
+  if (given["without_people_if_no_detector"] != "true") checkDetector(config.pose);
   const auto of_map = checkMap(given);
   if (!given["bag"].empty()) checkInput(given, config, of_map);
   if (!given["output"].empty()) pf::RunFolder(given["output"]).removeIfEmpty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_measure_detector: how many simulated people a pose network finds.
+// posefusion_measure_detector: how many simulated people a detector finds.
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -130,13 +130,16 @@ void measureAll(const Options& options) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a pose\n"
-      "network finds 4 joints or more, and the empty frames in which it finds somebody.",
+      "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a detector\n"
+      "finds 4 joints or more, and the empty frames in which it finds somebody.",
       "posefusion_measure_detector"};
   Options o;
   o.config.every_nth_frame = 1;
   app.add_option("scenarios", o.scenarios, "names or scene files")->required();
-  app.add_option("--model", o.config.model, "weights of the network")->required();
+  app.add_option("--detector", o.config.detector, "as in the settings")
+      ->check(CLI::IsMember({"auto", "embedded", "network", "network+embedded"}));
+  app.add_option("--model", o.config.model, "weights of a pose network");
+  app.add_option("--embedded-model", o.config.embedded_model, "weights of a person model");
   app.add_option("--every", o.every, "looks at every n-th frame")->check(CLI::Range(1, 10000));
   app.add_option("--duration", o.changes.duration_s, "seconds")->check(CLI::PositiveNumber);
   app.add_option("--seed", o.changes.seed, "of the simulation");

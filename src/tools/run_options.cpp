@@ -54,9 +54,10 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
   app.add_option("--set", config.assignments, "one setting, group.name=value; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--mode", config.mode, "elastic, posefusion or pfh");
-  app.add_option("--model", config.model, "weights of the pose network");
+  app.add_option("--model", config.model, "weights of a pose network");
   app.add_option("--detector", config.detector, "where people come from")
-      ->check(CLI::IsMember({"network", "recorded", "none"}));
+      ->check(
+          CLI::IsMember({"auto", "embedded", "network", "network+embedded", "recorded", "none"}));
   app.add_option("--output", options.output, "folder for the results")->capture_default_str();
   app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: all");
   app.add_option("--threads", options.threads, "threads to use; 0: all cores")

@@ -82,6 +82,35 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   chain.unload();
 }
 
+TEST(Chain, LosslessIsTheOfflineChainToTheBitWithADetectorsMaskToo) {
+  const pf::TemporaryFolder folder;
+  const std::string model = POSEFUSION_TEST_MODELS "/near_is_person.onnx";
+  const SimulatedSequence sequence("box_walker", 6);
+  Chain chain("equal_masks");
+  chain.set("pose/detector", std::string("embedded"));
+  chain.set("pose/embedded_model", model);
+  chain.set("output", folder.str());
+  ASSERT_TRUE(chain.load());
+  pf::Config config;
+  config.pose.detector = "embedded";
+  config.pose.embedded_model = model;
+  pf::Pipeline pipeline(config, makePoseDetector(config.pose, {}));
+  int masked = 0;
+  for (int i = 0; i < sequence.frameCount(); ++i) {
+    const pf::RgbdFrame frame = sequence.frame(i).frame;
+    const pf::ProcessedFrame processed = pipeline.process(frame);
+    EXPECT_FALSE(processed.seen.people.mask.empty());
+    masked += processed.segmentation.mask.empty() ? 0 : 1;
+    EXPECT_EQ(outcome(chain.process(toMessages(frame))),
+              static_cast<int>(processed.status.outcome));
+  }
+  EXPECT_GT(masked, 0);
+  ASSERT_TRUE(chain.call("save_map").success);
+  saveMap(folder / "expected.ply", pipeline.mapper().map());
+  EXPECT_EQ(pf::readFile(folder / "latest/map.ply"), pf::readFile(folder / "expected.ply"));
+  chain.unload();
+}
+
 TEST(Chain, PassesTheVerySameMessagesOn) {
   Chain chain("zero_copy");
   ASSERT_TRUE(chain.load());

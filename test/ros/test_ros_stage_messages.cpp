@@ -42,6 +42,23 @@ TEST(StageMessages, PeopleGoThereAndBack) {
   EXPECT_EQ(back.people[0].joints[0].p, 0.0F);
 }
 
+TEST(StageMessages, TheMaskOfPeopleIsTheMessagesOwn) {
+  pf::People people;
+  people.mask = {cv::Mat(60, 80, CV_8UC1, cv::Scalar(7)), cv::Mat(60, 80, CV_8UC1, cv::Scalar(1))};
+  people.mask.probability.at<std::uint8_t>(59, 3) = 255;
+  PeopleMsg message = toMessage(people, headerAt(1));
+  const auto back = fromMessage(message);
+  EXPECT_TRUE(same(back.mask.probability, people.mask.probability));
+  EXPECT_TRUE(same(back.mask.owner, people.mask.owner));
+  EXPECT_EQ(back.mask.probability.data, message.mask.data()) << "no copy";
+  EXPECT_TRUE(fromMessage(toMessage(pf::People(), headerAt(1))).mask.empty());
+  message.mask.pop_back();
+  EXPECT_NE(errorOf([&] { fromMessage(message); }).find("4799 cells, expected 80x60"),
+            std::string::npos);
+  message.mask.clear();
+  EXPECT_NE(errorOf([&] { fromMessage(message); }).find("both or none"), std::string::npos);
+}
+
 TEST(StageMessages, FlowGoesThereAndBack) {
   pf::SparseFlow flow;
   flow.from_ns = 1234567890123456789;

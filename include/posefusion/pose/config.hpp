@@ -7,10 +7,14 @@
 
 namespace pf {
 
+/// The detector where neither it nor a pose network is named.
+constexpr const char* kDefaultDetector = "embedded";
+
 /// Settings of the pose detector.
 struct PoseConfig {
-  std::string detector = "network";
+  std::string detector = "auto";
   std::string model;
+  std::string embedded_model;
   int input_height_px = 0;
   int every_nth_frame = 5;
   double min_peak = 0.05;
@@ -20,20 +24,33 @@ struct PoseConfig {
 };
 
 inline void visitFields(PoseConfig& c, FieldVisitor& v) {
-  v.integer("every_nth_frame", c.every_nth_frame, 1, 1000,
-            "the network sees every n-th sharp frame; joints are carried between");
+  v.integer(
+      "every_nth_frame", c.every_nth_frame, 1, 1000,
+      "the network sees every n-th sharp frame; people are carried between; the embedded model "
+      "sees all");
   v.number("min_peak", c.min_peak, 0.0, 1.0, "smallest heat-map value of a joint");
   v.number("min_person_score", c.min_person_score, 0.0, 1.0, "smallest mean score of a person");
   v.integer("min_person_joints", c.min_person_joints, 1, 18, "fewest joints of a person");
   v.integer("max_people", c.max_people, 1, 15, "people kept per frame, best first");
   v.atStart();
-  v.choice("detector", c.detector, {"network", "recorded", "none"},
-           "where people come from: a pose network, People recorded with the input, or nowhere");
+  v.choice("detector", c.detector,
+           {"auto", "embedded", "network", "network+embedded", "recorded", "none"},
+           "where people come from: the package's own model of depth, a pose network, both, People "
+           "recorded with the input, or nowhere; auto: network where `model` names one, else "
+           "embedded");
   v.text("model", c.model,
          "weights of the pose network (.pb, .caffemodel, .onnx), its settings in the "
          ".yaml of the same name beside it or in config/models; empty = from scripts/get_models");
+  v.text("embedded_model", c.embedded_model,
+         "weights of the person model of depth (.onnx); empty = the package's own");
   v.integer("input_height_px", c.input_height_px, 0, 4096,
             "height of the network's input, the width follows; 0 = as the model's settings say");
+}
+
+/// The detector that the settings choose: never "auto".
+inline std::string chosenDetector(const PoseConfig& c) {
+  if (c.detector != "auto") return c.detector;
+  return c.model.empty() ? kDefaultDetector : "network";
 }
 
 }  // namespace pf

@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// A source of people: a network, a recording, or none. Called for sharp frames in order, from one
+/// A source of people: networks, a recording, or none. Called for sharp frames in order, from one
 /// thread at a time.
 class PoseDetector {
  public:
@@ -19,6 +19,8 @@ class PoseDetector {
   virtual People detect(const RgbdFrame& frame) = 0;
   /// From the next frame on; the detector, its model and the size of its input stay.
   virtual void set(const PoseConfig& /*config*/) {}
+  /// The same when a newer frame waits already: nothing that takes long is done.
+  virtual People detectInHaste(const RgbdFrame& frame) { return detect(frame); }
 };
 
 /// People recorded with the input, by stamp (ns).

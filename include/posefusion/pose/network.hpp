@@ -40,6 +40,7 @@ class PoseNetwork {
   const ModelSettings& settings() const { return settings_; }
 
  private:
+  void read();
   void checkChannels(const cv::Mat& blob) const;
 
   std::string model_path_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -70,11 +71,21 @@ struct Person {
   float score = 0.0F;  ///< mean score of joints and limbs
 };
 
+/// What a detector says of the pixels of a frame, on a coarse grid laid over the image: cell (x, y)
+/// covers 2x2 cells of depthInputGrid() for the frame's size.
+struct PersonMask {
+  cv::Mat probability;  ///< CV_8UC1, 255 = surely a person
+  cv::Mat owner;  ///< CV_8UC1, same size: 1 + index of the person in People::people, 0: nobody
+
+  bool empty() const { return probability.empty(); }
+};
+
 /// The people of one frame: the paper's [h x w] matrix with h <= 15.
 struct People {
   std::int64_t stamp_ns = 0;
   bool detected = false;  ///< false: the detector did not look at this frame
   std::vector<Person> people;
+  PersonMask mask{};  ///< empty: the detector knows of joints alone
 };
 
 }  // namespace pf

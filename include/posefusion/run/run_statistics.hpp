@@ -26,9 +26,10 @@ struct FrameCounts {
 
 /// What the masks of a run cover.
 struct MaskCounts {
-  std::size_t frames = 0;     ///< sharp frames
-  std::size_t with_mask = 0;  ///< of them with a pixel of a person
-  double mean_part = 0;       ///< mean part of the pixels masked, over the sharp frames
+  std::size_t frames = 0;          ///< sharp frames
+  std::size_t with_mask = 0;       ///< of them with a pixel of a person
+  std::size_t over_1_percent = 0;  ///< of them with more than 1 % of the pixels
+  double mean_part = 0;            ///< mean part of the pixels masked, over the sharp frames
 };
 
 /// Times of one stage over a run.

@@ -18,6 +18,7 @@ struct SegmentationConfig {
   double smoothness = 6.0;
   double color_weight = 1.0;
   double model_weight = 2.5;
+  double mask_weight = 1.0;
   int carry_frames = 30;
   int margin_px = 3;
 };
@@ -34,6 +35,8 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
   v.number("color_weight", c.color_weight, 0.0, 1e3, "weight of the colour likelihood");
   v.number("model_weight", c.model_weight, 0.0, 1e3,
            "weight of the agreement with the rendered map");
+  v.number("mask_weight", c.mask_weight, 0.0, 1e3,
+           "weight of a detector's own mask, where it gives one");
   v.integer("carry_frames", c.carry_frames, 0, 10000,
             "people are carried forward so many frames after they were last detected");
   v.integer("margin_px", c.margin_px, 0, 50,

@@ -8,6 +8,8 @@
 #include "posefusion/segmentation/body_distance.hpp"
 #include "posefusion/segmentation/config.hpp"
 #include "posefusion/segmentation/grid.hpp"
+#include "posefusion/segmentation/planes.hpp"
+#include "posefusion/segmentation/shown_people.hpp"
 #include "posefusion/segmentation/tracked_people.hpp"
 
 namespace pf {
@@ -16,9 +18,11 @@ namespace pf {
 struct Evidence {
   SceneGrid grid;
   std::vector<Background> background;  ///< all unknown without a map
-  std::vector<std::uint8_t> on_plane;  ///< 1 = part of a large plane
-  std::vector<std::int16_t> carried;   ///< person whose carried mask holds the cell, -1: none
+  std::vector<Flatness> flatness;
+  std::vector<std::int16_t> carried;  ///< person whose carried mask holds the cell, -1: none
   BodyDistance distance;
+  ShownPeople shown;                       ///< by the detector's mask
+  std::vector<std::int16_t> shown_person;  ///< person that it shows in the cell, -1: none
 };
 
 /// Cost that a cell pays for being called background (> 0) or person (< 0).
@@ -30,7 +34,10 @@ constexpr float kCertain = 1000.0F;
 /// Distance beyond which a cell's distance to the bodies no longer matters, in capsule radii.
 constexpr float kDistanceLimit = 4.0F;
 
-/// Part of a large plane, and not known to stand before the map.
+/// The person that a cell could belong to, -1: none.
+int candidateOf(const Evidence& evidence, int cell);
+
+/// Part of a large plane and not known to stand before the map, or of a small one.
 bool isFlat(const Evidence& evidence, int cell);
 
 /// Sum of the improved terms: distance to the skeletons in space, colour, agreement with the map,

@@ -14,6 +14,10 @@ namespace pf {
 /// while may have been mapped.
 bool isSure(const Person& person);
 
+/// Where the detector's mask shows somebody sure for certain, and the map has a surface: that is
+/// the person, mapped while nobody saw.
+bool isMappedPerson(const Evidence& evidence, const std::vector<TrackedPerson>& people, int cell);
+
 /// Cells of the cut (`labels`, 1 = person) that are surfaces of the map and belong to a person who
 /// was surely detected: close to the skeleton, not on a large plane. 1 = such a cell.
 std::vector<std::uint8_t> findMappedPeople(const Evidence& evidence,

@@ -9,7 +9,14 @@
 
 namespace pf {
 
-/// Finds the cells of large planes (floor, walls, table tops): no person is so flat and so large.
+/// What a cell lies on.
+enum class Flatness : std::uint8_t {
+  none,
+  small,  ///< a plane of the size of a body, flatter than one: the back of a chair, a box
+  large   ///< a plane larger than a body: floor, wall, table
+};
+
+/// Finds the cells of planes, which no person is.
 /// A plane is linear in inverse depth over the image, 1/z = a u + b v + c, where the noise of a
 /// structured-light sensor is uniform; patches of the grid are fitted and joined to regions.
 class PlaneFinder {
@@ -17,8 +24,7 @@ class PlaneFinder {
   PlaneFinder();
   ~PlaneFinder();
 
-  /// on_plane[cell] = 1 for cells of large planes.
-  void find(const SceneGrid& grid, std::vector<std::uint8_t>& on_plane);
+  void find(const SceneGrid& grid, std::vector<Flatness>& result);
 
  private:
   struct State;

@@ -15,6 +15,7 @@ namespace pf {
 struct TrackedPerson {
   Person person;           ///< joints in the newest frame
   bool fresh = false;      ///< detected in the newest frame
+  int detection = -1;      ///< if so: its index there
   double unseen = 0.0;     ///< frames since the last detection, weighted by what the map says
   bool in_map = false;     ///< the map holds the person by mistake: what it says there is not used
   float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
@@ -31,8 +32,9 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
 /// Puts newly detected people in the place of the carried ones they continue; the others are
-/// added. A detection continues the carried person whose mask holds most of its joints, at least a
-/// third. Joints that the detector missed this time are kept from before.
+/// added, unless a detector that sees every frame is not sure of them. A detection continues the
+/// carried person whose mask holds most of its joints, at least a third. Joints that the detector
+/// missed this time are kept from before.
 void mergeDetections(const People& detected, const SceneGrid& grid,
                      std::vector<TrackedPerson>& people);
 

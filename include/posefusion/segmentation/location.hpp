@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "posefusion/segmentation/energy.hpp"
+
+namespace pf {
+
+constexpr std::size_t kMinMaskCells = 12;  ///< a smaller mask is nobody
+constexpr float kMaxMaskSpread_m = 0.4F;   ///< in depth, of a carried mask around its person
+
+/// Number of cells on which the map has a say, with which it agrees, and which stand before it.
+struct MapVote {
+  float known = 0, agrees = 0, nearer = 0;
+
+  MapVote& operator+=(const MapVote& other) {
+    known += other.known;
+    agrees += other.agrees;
+    nearer += other.nearer;
+    return *this;
+  }
+};
+
+MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background);
+
+/// Finds a person's place in the scene from the joints, the detector's mask, the carried mask and
+/// the map. False: there is none, or it is a thing that the map holds, or the person was last
+/// detected too long ago (`carry_frames`).
+bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked);
+
+}  // namespace pf

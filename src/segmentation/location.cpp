@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/segmentation/location.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "posefusion/segmentation/mapped_people.hpp"
+
+namespace pf {
+namespace {
+
+constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask around its person
+
+// A person who is part of the map by mistake.
+constexpr double kInMapFrames = 10;     // for so long after a sure detection
+constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
+constexpr float kInMapPart = 0.6F;      // ... this part agrees, for a person to be in the map
+
+/// Cells of the carried mask, at the person's depth, that lie in front of the known background.
+std::vector<int> cellsBeforeMap(const Evidence& evidence, const TrackedPerson& tracked) {
+  std::vector<int> cells;
+  for (int cell : tracked.cells) {
+    if (evidence.background[cell] == Background::nearer &&
+        std::abs(evidence.grid.z[cell] - tracked.depth_m) < kMaxMaskSpread_m) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+/// Median depth of cells that have depth, 0 if there are none.
+float medianDepthOf(const std::vector<int>& cells, const SceneGrid& grid) {
+  std::vector<float> depths;
+  for (int cell : cells) depths.push_back(grid.z[cell]);
+  if (depths.empty()) return 0.0F;
+  std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
+  return depths[depths.size() / 2];
+}
+
+/// Cells that the detector's mask shows, without those that lie on something behind or in front.
+std::vector<int> shownCells(const std::vector<int>& sure, float depth_m, const SceneGrid& grid) {
+  std::vector<int> cells;
+  for (int cell : sure) {
+    if (std::abs(grid.z[cell] - depth_m) < kMaxShownSpread_m) cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// The line to a joint that is hidden crosses what hides it: seeds there are none.
+template <typename Condition>
+void dropCells(const Condition& condition, std::vector<int>& cells) {
+  cells.erase(std::remove_if(cells.begin(), cells.end(), condition), cells.end());
+}
+
+}  // namespace
+
+MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background) {
+  MapVote vote;
+  for (int cell : cells) {
+    vote.known += background[cell] != Background::unknown;
+    vote.agrees += background[cell] == Background::agrees;
+    vote.nearer += background[cell] == Background::nearer;
+  }
+  return vote;
+}
+
+bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {
+  const std::vector<int> sure = evidence.shown.sureCells(tracked.detection, evidence.grid);
+  const float shown_depth_m = medianDepthOf(sure, evidence.grid);
+  tracked.body =
+      liftPerson(tracked.person, evidence.grid, tracked.fresh ? shown_depth_m : tracked.depth_m);
+  Body& body = tracked.body;
+  body.shown = shownCells(sure, shown_depth_m, evidence.grid);
+  const bool is_shown = !body.shown.empty();
+  const auto hides = [&](int cell) {
+    return evidence.flatness[cell] == Flatness::small ||
+           (is_shown && isDenied(evidence.shown, cell));
+  };
+  dropCells(hides, body.seeds);
+  dropCells(hides, body.shown);
+  MapVote vote = voteOf(body.seeds, evidence.background);
+  vote += voteOf(body.shown, evidence.background);
+  const bool in_map = vote.known >= kMinKnownSeeds && vote.agrees > kInMapPart * vote.known;
+  if (tracked.fresh) tracked.in_map = in_map && isSure(tracked.person);
+  if (tracked.unseen > kInMapFrames) tracked.in_map = false;
+  if (in_map && tracked.fresh && !tracked.in_map) return false;
+  if (!tracked.in_map) {
+    const auto agrees = [&](int cell) { return evidence.background[cell] == Background::agrees; };
+    dropCells(agrees, body.seeds);
+    dropCells(agrees, body.shown);
+  }
+  body.anchors = cellsBeforeMap(evidence, tracked);
+  if (tracked.unseen > carry_frames) return false;
+  body.anchors.insert(body.anchors.end(), body.shown.begin(), body.shown.end());
+  if (body.seeds.empty() && body.anchors.size() < kMinMaskCells) return false;
+  if (body.depth_m <= 0.0F) body.depth_m = shown_depth_m > 0.0F ? shown_depth_m : tracked.depth_m;
+  body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
+  tracked.depth_m = body.depth_m;
+  return true;
+}
+
+}  // namespace pf
