@@ -23,13 +23,17 @@ class Worker {
   Worker(std::size_t limit, std::function<void(Item)> handler)
       : limit_(limit), handler_(std::move(handler)), thread_([this] { run(); }) {}
 
-  ~Worker() {
+  ~Worker() { stop(); }
+
+  /// Waits for the item at hand. Where the handler asks its owner for the worker, this must come
+  /// before the owner lets go of it.
+  void stop() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       stopping_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
 
   /// Adds an item. The oldest one is returned where too many wait.

@@ -18,7 +18,7 @@ class LoopCloserNodelet : public ChainNodelet {
   ~LoopCloserNodelet() override {
     stopWaiting();
     questions_.shutdown();
-    worker_.reset();
+    if (worker_) worker_->stop();
   }
 
  private:

@@ -102,10 +102,12 @@ class Replay(unittest.TestCase):
         file = pathlib.Path(self.folder, "mapped/latest/map.pfdb")
         shutil.copy(file, self.folder + "/known.pfdb")
         before = file.read_bytes()
+        # The recording is too short for the camera to be found: that takes proof over ten frames.
         text = self.replay("bag:=sequence.bag", "detector:=none", "output:=localized", "map:=known.pfdb",
-                           "localize_only:=true")
-        self.assertIn(f"{FRAMES} frames sent", text)
-        self.assertNotRegex(text, r"ERROR|FATAL|has died|no loop closer")
+                           "localize_only:=true", expect=1)
+        self.assertIn(f"{FRAMES} frames sent, {FRAMES} unproven", text)
+        self.assertIn("fusion has saved nothing in " + self.folder + "/localized", text)
+        self.assertNotRegex(text, r"ERROR|has died|no loop closer")
         self.assertEqual(pathlib.Path(self.folder, "known.pfdb").read_bytes(), before)
         self.assertFalse(list(pathlib.Path(self.folder).glob("localized/*/map.pfdb")))
 
