@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/mapper.hpp"
 
+#include <utility>
+
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
@@ -100,12 +102,11 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
   status.detail = s.defect(input);
   if (!status.detail.empty()) return status;
-  const double elapsed_s = 1e-9 * static_cast<double>(input.frame.stamp_ns - s.last_stamp_ns);
-  s.last_stamp_ns = input.frame.stamp_ns;
+  const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
   s.frame.assign(input.frame, input.mask, s.config.frame);
   Location location = s.locate(input);
-  s.countLostTime(location, elapsed_s);
+  s.countLostTime(location, before_ns);
   if (s.wantsFragment(input, location)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
   s.question.reset();

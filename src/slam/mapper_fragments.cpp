@@ -15,13 +15,14 @@ constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
 
 }  // namespace
 
-void Mapper::State::countLostTime(const Location& location, double elapsed_s) {
+/// `before_ns`: stamp of the frame before; kBeforeAll: there was none.
+void Mapper::State::countLostTime(const Location& location, std::int64_t before_ns) {
   const bool lost = location.state == TrackingState::lost;
   if (lost && lost_s == 0 && fragment != 0) map_at_loss.reset();  // the fragment belongs into it
   if (!lost) lost_s = 0;
   // A covered camera is not in a place that nobody knows.
-  if (lost && location.outcome != FrameOutcome::no_depth) {
-    lost_s += std::min(elapsed_s, kMostElapsed_s);
+  if (lost && before_ns != kBeforeAll && location.outcome != FrameOutcome::no_depth) {
+    lost_s += std::min(1e-9 * static_cast<double>(last_stamp_ns - before_ns), kMostElapsed_s);
   }
 }
 

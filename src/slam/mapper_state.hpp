@@ -72,7 +72,7 @@ struct Mapper::State {
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void askForPlace();
-  void countLostTime(const Location& location, double elapsed_s);
+  void countLostTime(const Location& location, std::int64_t before_ns);
   bool wantsFragment(const StaticFrame& input, const Location& location) const;
   Location beginFragment();
   void askForFragment();
