@@ -59,4 +59,12 @@ class SimulatedSequence {
   Eigen::Isometry3d T_map_world_ = Eigen::Isometry3d::Identity();
 };
 
+/// The empty box without systematic errors of depth, which turn and stretch any map by some
+/// centimetres: its first frames, drawn once in a program.
+template <int frames>
+const SimulatedSequence& exactBox() {
+  static const SimulatedSequence drawn("empty_box", frames, {"depth.distortion=0"});
+  return drawn;
+}
+
 }  // namespace pf

@@ -21,10 +21,7 @@ namespace {
 
 constexpr int kMapped = 60, kCovered = 12, kAfter = 60;
 
-const SimulatedSequence& room() {
-  static const SimulatedSequence drawn("empty_box", kMapped, {"depth.distortion=0"});
-  return drawn;
-}
+const SimulatedSequence& room() { return exactBox<kMapped>(); }
 
 /// The mapped frame that lies farthest from the last.
 int farthestFrame() {
@@ -152,6 +149,28 @@ class LoopExchanges : public testing::Test {
   std::unique_ptr<LoopExchange> exchange;
   std::int64_t stamp_ns = 0;
 };
+
+TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
+  for (int i = 0; i < kMapped; ++i) see(i);
+  const auto& keyframes = mapper->backEnd().graph().keyframes();
+  ASSERT_GT(keyframes.size(), 1U);
+  const Keyframe first = keyframes.front(), last = keyframes.back();
+  LoopAnswer answer;
+  LoopConstraint loop{first.id, last.id, first.T_map_camera.inverse() * last.T_map_camera,
+                      1e-6 * Matrix6d::Identity()};
+  loop.T_from_to.translation().x() += 0.01;
+  answer.loops.push_back(loop);
+  mapper->take(answer);
+  ASSERT_EQ(mapper->backEnd().counts().accepted, 1U);
+  closer->questions.clear();
+  for (int i = 0; i < kCovered; ++i) see(kMapped - 1, true);
+  for (int i = 0; i < 3 && closer->questions.empty(); ++i) see(farthestFrame());
+  ASSERT_EQ(closer->questions.size(), 1U);
+  ASSERT_NE(closer->questions[0].place, nullptr);
+  ASSERT_EQ(closer->questions[0].corrected.size(), mapper->backEnd().keyframePoses().size());
+  EXPECT_EQ(closer->questions[0].corrected.back().matrix(),
+            mapper->backEnd().keyframePoses().back().matrix());
+}
 
 TEST_F(LoopExchanges, ALostCameraAsksAgainWhenAQuestionWasGivenUp) {
   for (int i = 0; i < 3; ++i) see(i);

@@ -42,19 +42,24 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   fused.begins_fragment = fragment != 0 && fragment != back_end.graph().keyframes().back().fragment;
   const int id = back_end.add(fused);
   if (id < 0) return;
+  if (config.loop.enabled) {
+    tellCloser();
+    if (!question->corrected.empty()) question->corrected.pop_back();  // it is new itself
+  }
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
   views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
-  if (!config.loop.enabled) return;
-  question.emplace().stamp_ns = last_stamp_ns;
+  if (config.loop.enabled) question->keyframe = views.back();
+}
+
+/// Begins a question, or goes on with it, by what the closer does not know yet.
+void Mapper::State::tellCloser() {
+  if (!question) question.emplace();
+  question->stamp_ns = last_stamp_ns;
   if (std::exchange(closer_is_old, false)) {
-    question->known.emplace(views.begin(), views.end() - 1);
+    question->known.emplace(views.begin(), views.end());
     keyframes_moved = true;
   }
-  if (std::exchange(keyframes_moved, false)) {
-    question->corrected = back_end.keyframePoses();
-    question->corrected.pop_back();
-  }
-  question->keyframe = views.back();
+  if (std::exchange(keyframes_moved, false)) question->corrected = back_end.keyframePoses();
 }
 
 /// Lost: asks where this frame is, unless the answer for one before is still to come.
@@ -65,15 +70,10 @@ void Mapper::State::askForPlace() {
     return;
   }
   if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
-  if (!question) question.emplace();
-  question->stamp_ns = last_stamp_ns;
+  tellCloser();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
-  }
-  if (std::exchange(closer_is_old, false)) {
-    question->known.emplace(views.begin(), views.end());
-    question->corrected = back_end.keyframePoses();
   }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();

@@ -71,6 +71,7 @@ struct Mapper::State {
   void follow(const Location& location);
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
+  void tellCloser();
   void askForPlace();
   void countLostTime(const Location& location, std::int64_t before_ns);
   bool wantsFragment(const StaticFrame& input, const Location& location) const;
