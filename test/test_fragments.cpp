@@ -16,10 +16,7 @@ namespace {
 
 constexpr int kMapped = 60, kCovered = 20, kLookedAbout = 6;
 
-const SimulatedSequence& room() {
-  static const SimulatedSequence drawn("empty_box", kMapped, {"depth.distortion=0"});
-  return drawn;
-}
+const SimulatedSequence& room() { return exactBox<kMapped>(); }
 
 /// Maps a room, covers the camera for long, and uncovers it elsewhere.
 struct Carried {

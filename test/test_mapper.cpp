@@ -29,11 +29,7 @@ class MapperTest : public ::testing::Test {
     return frame;
   }
 
-  /// Without systematic errors of depth, which turn and stretch any map by some centimetres.
-  static const SimulatedSequence& room() {
-    static const SimulatedSequence drawn("empty_box", 60, {"depth.distortion=0"});
-    return drawn;
-  }
+  static const SimulatedSequence& room() { return exactBox<60>(); }
 };
 
 TEST_F(MapperTest, FollowsAHandHeldCamera) {

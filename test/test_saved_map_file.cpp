@@ -33,10 +33,7 @@ Config config() {
   return c;
 }
 
-const SimulatedSequence& room() {
-  static const SimulatedSequence drawn("empty_box", kFrames, {"depth.distortion=0"});
-  return drawn;
-}
+const SimulatedSequence& room() { return exactBox<kFrames>(); }
 
 bool equal(SurfelArrays a, const SurfelArrays& b) {
   bool same = true;
