@@ -30,6 +30,8 @@ def options():
     parser.add_argument("--reuse", type=int, default=3, help="times a picture is seen, about")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1, help="of PyTorch")
+    parser.add_argument("--bfloat16", action="store_true",
+                        help="1.6 times as fast where the processor has it (avx512_bf16, amx)")
     parser.add_argument("--every", type=int, default=10000, help="images between reports")
     parser.add_argument("--validation-rooms", type=int, default=12)
     return parser.parse_args()
@@ -63,6 +65,7 @@ class Training:
         torch.manual_seed(o.seed)
         self.network = PersonNetwork().to(memory_format=torch.channels_last)
         self.smooth = copy.deepcopy(self.network)
+        self.bfloat16 = o.bfloat16
         self.optimiser = torch.optim.AdamW(self.network.parameters(), o.rate, weight_decay=1e-2)
         self.images = self.rooms = 0
 
@@ -82,7 +85,9 @@ class Training:
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         self.network.train()
-        parts = losses(self.network(inputs), targets(samples))
+        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bfloat16):
+            answers = self.network(inputs)
+        parts = losses([answer.float() for answer in answers], targets(samples))
         loss = sum(parts.values())
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
