@@ -96,11 +96,17 @@ TEST(PersonGroups, JointsAreWhereTheirPeaksAreAndBelongToTheirBody) {
 }
 
 TEST(PersonGroups, AMaskWithoutJointsIsAChair) {
-  for (const int joints : {0, 1, 2}) {
+  const People people = Drawn({{{20, 20, 28, 80}, 2.0F, 0}}).group();
+  EXPECT_TRUE(people.people.empty());
+  EXPECT_EQ(cv::countNonZero(people.mask.owner), 0);
+  EXPECT_GT(cv::countNonZero(people.mask.probability), 0) << "who is known may be there";
+}
+
+TEST(PersonGroups, FewJointsAreAGuess) {
+  for (const int joints : {1, 2}) {
     const People people = Drawn({{{20, 20, 28, 80}, 2.0F, joints}}).group();
-    EXPECT_TRUE(people.people.empty());
-    EXPECT_EQ(cv::countNonZero(people.mask.owner), 0);
-    EXPECT_GT(cv::countNonZero(people.mask.probability), 0) << "who is known may be there";
+    ASSERT_EQ(people.people.size(), 1U);
+    EXPECT_NEAR(people.people[0].score, 0.8 * joints / 6, 1e-5);
   }
 }
 

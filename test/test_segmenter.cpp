@@ -170,6 +170,23 @@ TEST(Segmenter, WhatTheMapHoldsIsNoPersonWhateverAWeakDetectionShows) {
   EXPECT_TRUE(result.mask.empty() || iou(result.mask, scene.truth) < 0.05);
 }
 
+/// Part of a body at the border of the picture, say: one joint, a score that is low.
+TEST(Segmenter, AGuessIsSomebodyNewBeforeTheMapOnly) {
+  Scene scene;
+  scene.people.mask = maskOf(scene);
+  Person& guess = scene.people.people[0];
+  for (std::size_t j = 1; j < guess.joints.size(); ++j) guess.joints[j] = Keypoint();
+  guess.score = 0.13F;
+  const auto masked = [&](const ModelView* map) {
+    const cv::Mat mask = SegmenterChain().segment(scene.frame, scene.people, map).mask;
+    return mask.empty() ? 0.0 : iou(mask, scene.truth);
+  };
+  EXPECT_GT(masked(&scene.room), 0.85);
+  EXPECT_EQ(masked(nullptr), 0.0) << "nothing is known of what was there";
+  scene.room.depth_m.setTo(2.0F, scene.truth);
+  EXPECT_LT(masked(&scene.room), 0.05) << "it has always stood there";
+}
+
 TEST(Segmenter, AMirroredSceneHasAMirroredMask) {
   Scene scene(2.0F, 260);
   const Segmentation straight = SegmenterChain().segment(scene.frame, scene.people, nullptr);

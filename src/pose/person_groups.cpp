@@ -13,8 +13,7 @@ namespace pf {
 namespace {
 
 constexpr float kMinMask = 0.4F;        // probability of a cell that has a vote
-constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint; who has fewer than
-constexpr int kMinJoints = 3;           // so many is nobody
+constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint
 constexpr int kScoredJoints = 6;        // whose mean is the person's score
 constexpr float kJointReach_m = 0.50F;  // of a joint's vote
 constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is nobody
@@ -117,22 +116,22 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
   }
 }
 
-/// Three joints speak for the person; its score is the mean of the best, which those who have fewer
-/// miss.
-bool isBelieved(Person& person) {
+/// The mean of the best joints, which those who have fewer miss.
+float scoreOf(const Person& person) {
   std::array<float, kJointCount> p{};
   for (std::size_t j = 0; j < p.size(); ++j) p[j] = person.joints[j].p;
   std::sort(p.begin(), p.end(), std::greater<>());
-  person.score = 0.0F;
-  for (int j = 0; j < kScoredJoints; ++j) person.score += p[j] / kScoredJoints;
-  return p[kMinJoints - 1] > 0.0F;
+  float score = 0.0F;
+  for (int j = 0; j < kScoredJoints; ++j) score += p[static_cast<std::size_t>(j)] / kScoredJoints;
+  return score;
 }
 
 /// Group of each person, best first.
-std::vector<int> believed(std::vector<Group>& groups, int max_people) {
+std::vector<int> bestFirst(std::vector<Group>& groups, int max_people) {
   std::vector<int> order;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (groups[i].area_m2 >= kMinArea_m2 && isBelieved(groups[i].person)) {
+    groups[i].person.score = scoreOf(groups[i].person);
+    if (groups[i].area_m2 >= kMinArea_m2 && groups[i].person.score > 0.0F) {
       order.push_back(static_cast<int>(i));
     }
   }
@@ -176,7 +175,7 @@ People groupPeople(const PersonMaps& maps, const cv::Mat& small_m, const Pinhole
   std::vector<Vote> votes = collectVotes(maps, small_m);
   std::vector<Group> groups = groupVotes(input, votes);
   addJoints(maps, small_m, input, groups);
-  const std::vector<int> order = believed(groups, max_people);
+  const std::vector<int> order = bestFirst(groups, max_people);
   People people;
   people.detected = true;
   for (const int i : order) people.people.push_back(groups[static_cast<std::size_t>(i)].person);

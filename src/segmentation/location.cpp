@@ -12,6 +12,12 @@ namespace {
 
 constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask around its person
 
+// Somebody new, by a detector that gives a mask with every frame.
+constexpr float kSureNewScore = 0.4F;  // believed without the map
+constexpr float kShownNew = 0.5F;      // probability of the cells that are asked about
+constexpr float kKnownNew = 0.5F;      // the map knows this part of them at least ...
+constexpr float kNearerNew = 0.8F;     // ... and this part of those stands before it
+
 // A person who is part of the map by mistake.
 constexpr double kInMapFrames = 10;     // for so long after a sure detection
 constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
@@ -63,6 +69,25 @@ MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& bac
     vote.nearer += background[cell] == Background::nearer;
   }
   return vote;
+}
+
+std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
+                           const std::vector<Background>& background) {
+  std::vector<std::vector<int>> cells(detected.people.size());
+  for (std::size_t cell = 0; cell < shown.detection.size(); ++cell) {
+    const auto index = static_cast<std::size_t>(shown.detection[cell]);
+    if (shown.detection[cell] < 0 || shown.probability[cell] < kShownNew) continue;
+    if (index < cells.size()) cells[index].push_back(static_cast<int>(cell));
+  }
+  std::vector<bool> may_be_new;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const MapVote vote = voteOf(cells[i], background);
+    const bool before_map = cells[i].size() >= kMinMaskCells &&
+                            vote.known > kKnownNew * static_cast<float>(cells[i].size()) &&
+                            vote.nearer > kNearerNew * vote.known;
+    may_be_new.push_back(shown.empty() || detected.people[i].score >= kSureNewScore || before_map);
+  }
+  return may_be_new;
 }
 
 bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {

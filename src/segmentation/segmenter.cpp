@@ -170,12 +170,13 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   if (!config_.enabled || (s.people.empty() && people.people.empty())) return result;
   s.takeGrid(frame, config_.grid_width);
   carryPeople(flow, s.evidence.grid, s.people);
-  mergeDetections(people, s.evidence.grid, s.people);
   sampleMask(people.mask, frame.depth.size(), s.evidence.grid, s.evidence.shown);
   s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
     compareWithModel(s.evidence.grid, *background, T_view_camera, s.evidence.background);
   }
+  mergeDetections(people, mayBeNew(people, s.evidence.shown, s.evidence.background),
+                  s.evidence.grid, s.people);
   s.planes.find(s.evidence.grid, s.evidence.flatness);
   s.locate(config_.carry_frames);
   if (s.people.empty()) return result;

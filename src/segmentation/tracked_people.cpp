@@ -11,9 +11,8 @@ constexpr int kMaskSamples = 30;            // points of each person's mask whos
 constexpr float kMaxDeviation = 0.019F;     // of a joint's flow from its person's, in image widths
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints
 constexpr float kMissedJointFading = 0.6F;  // likelihood of a joint that a detection missed ...
-constexpr float kMinNewScore = 0.4F;        // of somebody new where every frame brings a detection
-constexpr float kFrameFading = 0.93F;       // the same where every frame brings one
-constexpr float kMinKeptLikelihood = 0.1F;  // ... which is kept while it was above this
+constexpr float kFrameFading = 0.93F;       // ... or, where every frame brings a detection, this,
+constexpr float kMinKeptLikelihood = 0.1F;  // and which is kept while it was above this
 
 float medianOf(std::vector<float>& values) {
   if (values.empty()) return 0.0F;
@@ -144,8 +143,8 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
   }
 }
 
-void mergeDetections(const People& detected, const SceneGrid& grid,
-                     std::vector<TrackedPerson>& people) {
+void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,
+                     const SceneGrid& grid, std::vector<TrackedPerson>& people) {
   std::vector<int> holder(grid.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (int cell : people[i].cells) holder[cell] = static_cast<int>(i);
@@ -154,7 +153,7 @@ void mergeDetections(const People& detected, const SceneGrid& grid,
     Person person = detected.people[i];
     dropJointsOutside(grid, person);
     const int continued = findContinued(person, grid, holder, people);
-    if (continued < 0 && !detected.mask.empty() && person.score < kMinNewScore) continue;
+    if (continued < 0 && !may_be_new[i]) continue;
     if (continued < 0) {
       people.emplace_back();
       people.back().person = person;

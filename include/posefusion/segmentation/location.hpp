@@ -25,6 +25,12 @@ struct MapVote {
 
 MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background);
 
+/// Which detections are believed to be somebody new: all of a detector that gives no mask, and
+/// those it is sure of; of the others, part of a body at the border of the picture say, those that
+/// stand before the map where nothing stood.
+std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
+                           const std::vector<Background>& background);
+
 /// Finds a person's place in the scene from the joints, the detector's mask, the carried mask and
 /// the map. False: there is none, or it is a thing that the map holds, or the person was last
 /// detected too long ago (`carry_frames`).

@@ -31,11 +31,11 @@ struct TrackedPerson {
 void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
-/// Puts newly detected people in the place of the carried ones they continue; the others are
-/// added, unless a detector that sees every frame is not sure of them. A detection continues the
+/// Puts newly detected people in the place of the carried ones they continue; of the others those
+/// are added that `may_be_new` allows (one for each detection). A detection continues the
 /// carried person whose mask holds most of its joints, at least a third. Joints that the detector
 /// missed this time are kept from before.
-void mergeDetections(const People& detected, const SceneGrid& grid,
-                     std::vector<TrackedPerson>& people);
+void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,
+                     const SceneGrid& grid, std::vector<TrackedPerson>& people);
 
 }  // namespace pf
