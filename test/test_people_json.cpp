@@ -15,6 +15,7 @@ People peopleAt(std::int64_t stamp_ns, std::size_t count) {
   People people{stamp_ns, true, std::vector<Person>(count)};
   for (auto& person : people.people) {
     person.score = unit(random);
+    person.id = static_cast<int>(3 * unit(random));
     for (auto& joint : person.joints)
       joint = {640 * unit(random), 480 * unit(random), unit(random)};
   }
@@ -33,6 +34,7 @@ TEST(PeopleJson, ReadsBackAsTheSameToTheBit) {
   const auto expected = peopleAt(1, 2).people;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(read.at(1).people[i].score, expected[i].score);
+    EXPECT_EQ(read.at(1).people[i].id, expected[i].id);
     for (std::size_t j = 0; j < kJointCount; ++j) {
       EXPECT_EQ(read.at(1).people[i].joints[j].u, expected[i].joints[j].u);
       EXPECT_EQ(read.at(1).people[i].joints[j].p, expected[i].joints[j].p);

@@ -24,6 +24,8 @@ TEST(TrackedPeople, CarriesPeopleWhoWalkUnseen) {
     const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
     ASSERT_FALSE(result.mask.empty()) << i;
     EXPECT_GT(iou(result.mask, scene.truth), 0.85) << i;
+    ASSERT_EQ(result.people.people.size(), 1U) << i;
+    EXPECT_EQ(result.people.people[0].id, 1) << i;
   }
 }
 
@@ -35,6 +37,17 @@ TEST(TrackedPeople, ForgetsWhoIsGone) {
   scene.frame.color.setTo(cv::Scalar(200, 190, 170));
   const Segmentation result = segmenter.segment(scene.frame, {2, false, {}}, &scene.room);
   EXPECT_TRUE(result.mask.empty() || cv::countNonZero(result.mask) < 300);
+}
+
+TEST(TrackedPeople, SomebodyElseHasAnotherId) {
+  SegmenterChain segmenter;
+  Scene scene;
+  segmenter.segment(scene.frame, scene.people, &scene.room);
+  Scene other(1.5F, 500);
+  other.frame.stamp_ns = 2;
+  const Segmentation result = segmenter.segment(other.frame, other.people, &other.room);
+  ASSERT_FALSE(result.people.people.empty());
+  EXPECT_EQ(result.people.people.back().id, 2);
 }
 
 TEST(TrackedPeople, ForgetsCarriedPeopleWhenTheImageSizeChanges) {

@@ -29,6 +29,7 @@ Person parsePerson(const json& entry) {
   }
   Person person;
   person.score = entry.value("score", 1.0F);
+  person.id = entry.value("id", 0);
   std::transform(joints.begin(), joints.end(), person.joints.begin(), parseJoint);
   return person;
 }
@@ -57,7 +58,9 @@ using OutputJson = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std:
 OutputJson toJson(const Person& person) {
   OutputJson joints = OutputJson::array();
   for (const Keypoint& joint : person.joints) joints.push_back({joint.u, joint.v, joint.p});
-  return {{"score", person.score}, {"joints", std::move(joints)}};
+  OutputJson out{{"score", person.score}, {"joints", std::move(joints)}};
+  if (person.id > 0) out["id"] = person.id;
+  return out;
 }
 
 OutputJson toJson(const People& frame) {

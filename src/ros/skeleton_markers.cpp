@@ -91,7 +91,9 @@ visualization_msgs::MarkerArray toMarkers(const People& people, const RgbdFrame&
   clear.action = visualization_msgs::Marker::DELETEALL;
   markers.markers.push_back(clear);
   for (std::size_t i = 0; i < people.people.size(); ++i) {
-    visualization_msgs::Marker marker = markerOf(people.people[i], i, frame, header);
+    const int id = people.people[i].id;
+    const std::size_t number = id > 0 ? static_cast<std::size_t>(id) : i;  // keeps its colour
+    visualization_msgs::Marker marker = markerOf(people.people[i], number, frame, header);
     if (!marker.points.empty()) markers.markers.push_back(std::move(marker));
   }
   return markers;

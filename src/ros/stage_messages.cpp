@@ -42,6 +42,7 @@ PeopleMsg toMessage(const pf::People& people, const std_msgs::Header& header) {
   for (std::size_t i = 0; i < people.people.size(); ++i) {
     const pf::Person& from = people.people[i];
     message.people[i].score = from.score;
+    message.people[i].id = from.id;
     for (int j = 0; j < pf::kJointCount; ++j) {
       KeypointMsg& joint = message.people[i].joints[j];
       joint.u = from.joints[j].u;
@@ -63,6 +64,7 @@ pf::People fromMessage(const PeopleMsg& message) {
   people.people.resize(message.people.size());
   for (std::size_t i = 0; i < message.people.size(); ++i) {
     people.people[i].score = message.people[i].score;
+    people.people[i].id = message.people[i].id;
     for (int j = 0; j < pf::kJointCount; ++j) {
       const KeypointMsg& from = message.people[i].joints[j];
       people.people[i].joints[j] = {from.u, from.v, from.p};

@@ -53,6 +53,7 @@ struct PeopleSegmenter::State {
   GridCutter cutter;
   PaperCutter paper_cutter;
   std::vector<std::uint8_t> labels;
+  int last_id = 0;
 
   void takeGrid(const RgbdFrame& frame, int grid_width);
   void locate(int carry_frames);
@@ -81,7 +82,10 @@ void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
 void PeopleSegmenter::State::locate(int carry_frames) {
   std::vector<TrackedPerson> located;
   for (TrackedPerson& tracked : people) {
-    if (locatePerson(evidence, carry_frames, tracked)) located.push_back(std::move(tracked));
+    if (!locatePerson(evidence, carry_frames, tracked)) continue;
+    if (tracked.id == 0) tracked.id = ++last_id;
+    tracked.person.id = tracked.id;
+    located.push_back(std::move(tracked));
   }
   people.swap(located);
 }

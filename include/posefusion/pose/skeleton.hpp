@@ -69,6 +69,7 @@ struct Keypoint {
 struct Person {
   std::array<Keypoint, kJointCount> joints{};
   float score = 0.0F;  ///< mean score of joints and limbs
+  int id = 0;          ///< the same from frame to frame, from 1 on; 0: not followed
 };
 
 /// What a detector says of the pixels of a frame, on a coarse grid laid over the image: cell (x, y)

@@ -14,6 +14,7 @@ namespace pf {
 /// A person as carried from frame to frame.
 struct TrackedPerson {
   Person person;           ///< joints in the newest frame
+  int id = 0;              ///< of the person, from 1 on; 0: not believed yet
   bool fresh = false;      ///< detected in the newest frame
   int detection = -1;      ///< if so: its index there
   double unseen = 0.0;     ///< frames since the last detection, weighted by what the map says
