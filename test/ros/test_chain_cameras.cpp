@@ -6,6 +6,7 @@
 
 #include "chain_fixture.hpp"
 #include "compressed_messages.hpp"
+#include "posefusion_ros/image_subscriber.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -30,6 +31,20 @@ class SharpImages {
 
 bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+TEST(ChainCameras, ATransportIsBelowTheRawNameAndNamesThePackageOfTheSender) {
+  ros::NodeHandle handle("transports");
+  const auto ignore = [](const InputImage&) {};
+  const ImageSubscriber raw(handle, {"eye/image", "raw"}, ignore);
+  EXPECT_EQ(raw.topic(), "/transports/eye/image");
+  EXPECT_EQ(raw.type(), "sensor_msgs/Image");
+  EXPECT_EQ(raw.advice(), "");
+  const ImageSubscriber depth(handle, {"/depth/image", "compressedDepth"}, ignore);
+  EXPECT_EQ(depth.topic(), "/depth/image/compressedDepth");
+  EXPECT_EQ(depth.type(), "sensor_msgs/CompressedImage");
+  EXPECT_FALSE(depth.hasPublisher());
+  EXPECT_NE(depth.advice().find("ros-noetic-compressed-depth-image-transport"), std::string::npos);
 }
 
 TEST(ChainCameras, CompressedImagesAreFusedAsTheRawOnesAre) {
@@ -101,6 +116,17 @@ TEST(ChainCameras, DepthOfAnotherSizeAndLaterStamps) {
   EXPECT_EQ(sharp.depth->header.stamp, m.color->header.stamp);
   EXPECT_TRUE(same(toDepth(sharp.depth), half));
   EXPECT_EQ(sharp.color->width, static_cast<unsigned>(half.cols));
+}
+
+TEST(ChainCameras, RawImagesOfOneSizeGoThroughWithoutACopy) {
+  Chain chain("shared");
+  SharpImages sharp(chain);
+  ASSERT_TRUE(chain.load());
+  const CameraMessages m = toMessages(emptyRoom().frame(0).frame);
+  EXPECT_EQ(outcome(chain.process(m)), TrackingStatusMsg::FUSED);
+  ASSERT_TRUE(Chain::waitUntil([&] { return sharp.depth != nullptr && sharp.color != nullptr; }));
+  EXPECT_EQ(sharp.color, m.color);
+  EXPECT_EQ(sharp.depth, m.depth);
 }
 
 TEST(ChainCameras, AnotherUnitOfDepthBecomesMetres) {
