@@ -118,17 +118,6 @@ TEST(ChainCameras, DepthOfAnotherSizeAndLaterStamps) {
   EXPECT_EQ(sharp.color->width, static_cast<unsigned>(half.cols));
 }
 
-TEST(ChainCameras, RawImagesOfOneSizeGoThroughWithoutACopy) {
-  Chain chain("shared");
-  SharpImages sharp(chain);
-  ASSERT_TRUE(chain.load());
-  const CameraMessages m = toMessages(emptyRoom().frame(0).frame);
-  EXPECT_EQ(outcome(chain.process(m)), TrackingStatusMsg::FUSED);
-  ASSERT_TRUE(Chain::waitUntil([&] { return sharp.depth != nullptr && sharp.color != nullptr; }));
-  EXPECT_EQ(sharp.color, m.color);
-  EXPECT_EQ(sharp.depth, m.depth);
-}
-
 TEST(ChainCameras, AnotherUnitOfDepthBecomesMetres) {
   Chain chain("unit");
   chain.set("depth_unit_m", 0.0005);
