@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
 #include "posefusion/core/error.hpp"
 
@@ -109,22 +110,44 @@ TEST(Rectifier, PassesAnUndistortedFrameOnUntouched) {
   EXPECT_EQ(out.depth.data, in.depth.data);
 }
 
-TEST(Rectifier, MovesPixelsToWhereAPinholeCameraSeesThem) {
+/// A bright spot of depth where the lens puts the ray (0.3, 0.2, 1), at `bend` times the
+/// pinhole's distance from the centre, has to be where the pinhole sees it.
+void expectStraight(const PinholeCamera& bent, double bend) {
   RgbdFrame in = frame();
-  in.camera.distortion = {-0.3, 0.1, 0, 0, 0};
-  // A bright spot where the lens puts the ray (0.3, 0.2, 1).
-  const double x = 0.3, y = 0.2, r2 = x * x + y * y;
-  const double bend = 1 - 0.3 * r2 + 0.1 * r2 * r2;
+  in.camera = bent;
+  const double x = 0.3, y = 0.2;
   const int u = static_cast<int>(std::lround(60 * x * bend + 31));
   const int v = static_cast<int>(std::lround(61 * y * bend + 24));
   in.depth.at<std::uint16_t>(v, u) = 999;
   const RgbdFrame out = Rectifier().rectify(in);
   EXPECT_FALSE(out.camera.isDistorted());
   const Eigen::Vector2d expected = in.camera.project({x, y, 1});
-  cv::Point found;
-  cv::minMaxLoc(out.depth(cv::Rect(5, 5, 54, 38)) == 999, nullptr, nullptr, nullptr, &found);
-  EXPECT_NEAR(found.x + 5, expected.x(), 1.1);
-  EXPECT_NEAR(found.y + 5, expected.y(), 1.1);
+  std::vector<cv::Point> found;
+  cv::findNonZero(out.depth == 999, found);
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(cv::mean(found)[0], expected.x(), 0.9);
+  EXPECT_NEAR(cv::mean(found)[1], expected.y(), 0.9);
+  EXPECT_GT(std::abs(bend - 1), 0.06) << "a pixel: else the test could not fail";
+}
+
+TEST(Rectifier, MovesPixelsToWhereAPinholeCameraSeesThem) {
+  const double r2 = 0.3 * 0.3 + 0.2 * 0.2;
+  PinholeCamera bent = camera();
+  bent.distortion = {-0.8, 0.1};
+  expectStraight(bent, 1 - 0.8 * r2 + 0.1 * r2 * r2);
+  bent.distortion = {0.2, 0, 0, 0, 0, 1.5, 0.3, 0};
+  EXPECT_EQ(bent.lensName(), std::string("rational_polynomial"));
+  expectStraight(bent, (1 + 0.2 * r2) / (1 + 1.5 * r2 + 0.3 * r2 * r2));
+}
+
+TEST(Rectifier, AnEquidistantLensGrowsWithTheAngle) {
+  const double r = std::sqrt(0.3 * 0.3 + 0.2 * 0.2), angle = std::atan(r);
+  PinholeCamera fisheye = camera();
+  fisheye.lens = LensModel::kEquidistant;
+  EXPECT_TRUE(fisheye.isDistorted()) << "without coefficients too";
+  EXPECT_NE(fisheye, camera());
+  fisheye.distortion = {-0.6, 0.1};
+  expectStraight(fisheye, angle * (1 - 0.6 * angle * angle + 0.1 * std::pow(angle, 4)) / r);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST_F(TumFolderTest, DepthUnitAndDistortionComeFromTheCameraFile) {
              "depth_factor: 5000}");
   const auto frame = readAll()[0].frame;
   EXPECT_DOUBLE_EQ(frame.depth_unit_m, 1.0 / 5000);
-  EXPECT_EQ(frame.camera.distortion, (std::array<double, 5>{0.1, 0, 0, -0.01, 0}));
+  EXPECT_EQ(frame.camera.distortion, (std::array<double, 8>{0.1, 0, 0, -0.01}));
 }
 
 TEST_F(TumFolderTest, ADamagedImageIsADefectOfItsFrameAlone) {
@@ -240,10 +240,48 @@ TEST(CameraFile, SavedFileReadsBackAsTheSame) {
   TemporaryFolder folder;
   CameraFile file{camera(), 5000.0};
   file.camera.fx = 1.0 / 3.0;
+  const auto expectSame = [&] {
+    saveCamera(folder / "c.yaml", file);
+    EXPECT_EQ(loadCamera(folder / "c.yaml").camera, file.camera);
+    EXPECT_EQ(loadCamera(folder / "c.yaml").depth_factor, file.depth_factor);
+  };
+  expectSame();
   file.camera.distortion = {0.1, 0.2, 0.3, 0.4, 0.5};
-  saveCamera(folder / "c.yaml", file);
-  EXPECT_EQ(loadCamera(folder / "c.yaml").camera, file.camera);
-  EXPECT_EQ(loadCamera(folder / "c.yaml").depth_factor, file.depth_factor);
+  expectSame();
+  file.camera.distortion = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+  expectSame();
+  file.camera.distortion = {0.1, 0.2, 0.3, 0.4};
+  file.camera.lens = LensModel::kEquidistant;
+  expectSame();
+  file.camera.distortion = {};
+  expectSame();
+}
+
+TEST(CameraFile, TheLensModelSaysWhatTheCoefficientsAre) {
+  TemporaryFolder folder;
+  const auto load = [&](const std::string& lens) {
+    return loadCamera(
+               folder.write("c.yaml",
+                            "width: 640\nheight: 480\nfx: 300\nfy: 300\ncx: 320\ncy: 240\n" + lens))
+        .camera;
+  };
+  const auto rational = load(
+      "distortion_model: rational_polynomial\ndistortion_coefficients: "
+      "{data: [1, 2, 3, 4, 5, 6, 7, 8]}\n");
+  EXPECT_EQ(rational.distortion, (std::array<double, 8>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(rational.lens, LensModel::kPolynomial);
+  EXPECT_EQ(load("k3: 0.5\n").distortion[4], 0.5);
+  for (const char* name : {"distortion_model: equidistant", "Camera.type: \"KannalaBrandt8\""}) {
+    const auto fisheye = load(std::string(name) + "\nk3: 0.5\n");
+    EXPECT_EQ(fisheye.lens, LensModel::kEquidistant) << name;
+    EXPECT_EQ(fisheye.distortion[2], 0.5) << name;
+  }
+  const auto error = [&](const std::string& lens) { return errorOf([&] { load(lens); }); };
+  EXPECT_NE(error("distortion_model: omni\n").find("is 'omni', expected plumb_bob"),
+            std::string::npos);
+  EXPECT_NE(error("distortion_model: equidistant\ndistortion_coefficients: [1, 2, 3, 4, 5]\n")
+                .find("5 values, expected at most 4: k1 k2 k3 k4"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -10,16 +10,19 @@ namespace posefusion_ros {
 
 /// Topics to read; an empty one is found by its usual names.
 struct BagTopics {
-  std::string color;  ///< sensor_msgs/Image or CompressedImage
-  std::string depth;  ///< registered with colour: Image (16UC1 mm, 32FC1 m) or compressedDepth
+  std::string color;        ///< sensor_msgs/Image or CompressedImage
+  std::string depth;        ///< registered with colour: Image (16UC1 mm, 32FC1 m), compressedDepth
+                            ///< or a PNG in a CompressedImage
   std::string camera_info;  ///< of the colour image
-  std::string people;       ///< posefusion/People
-  std::string truth;        ///< geometry_msgs/PoseStamped, the camera's
+  std::string depth_camera_info;  ///< of depth; needed where its images have another size
+  std::string people;             ///< posefusion/People
+  std::string truth;              ///< geometry_msgs/PoseStamped, the camera's
 };
 
 struct InputOptions {
   std::string camera_file;              ///< instead of the input's own camera
   double max_pair_difference_s = 0.02;  ///< between the stamps of colour and depth
+  double depth_stamp_offset_s = 0.0;    ///< added to the stamps of depth before that
   BagTopics topics;
 };
 

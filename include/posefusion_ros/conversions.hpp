@@ -4,6 +4,7 @@
 #include <cv_bridge/cv_bridge.h>
 #include <ros/time.h>
 #include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
 #include <string>
@@ -18,19 +19,26 @@ inline std::int64_t toNs(const ros::Time& stamp) {
 }
 
 /// Colour as CV_8UC3 R G B: a view of the message's bytes for rgb8, a converted copy for bgr8,
-/// rgba8 and bgra8. Throws InputError naming the encoding otherwise.
+/// rgba8, bgra8, mono8, bayer_*8, yuv422 (U Y V Y) and yuv422_yuy2 (Y U Y V). Throws InputError
+/// naming the encoding otherwise, or the bytes that are missing.
 cv::Mat toColor(const sensor_msgs::ImageConstPtr& image);
+/// JPEG, PNG.
+cv::Mat toColor(const sensor_msgs::CompressedImageConstPtr& image);
 
 /// Depth as a view of the message's bytes: 16UC1 or mono16 (millimetres), 32FC1 (metres). Throws
 /// InputError naming the encoding otherwise.
 cv::Mat toDepth(const sensor_msgs::ImageConstPtr& image);
+/// As compressed_depth_image_transport sends it (PNG, not RVL), or a plain 16-bit PNG
+/// or TIFF (millimetres). Throws InputError naming the format.
+cv::Mat toDepth(const sensor_msgs::CompressedImageConstPtr& image);
 
 /// The camera of the images that come with `info`, honouring binning and region of interest.
 /// `rectified`: the images are free of distortion, so P holds; else K and D. Throws InputError
-/// naming the field that no camera can have, or the distortion model where it is not plumb_bob.
+/// naming the field that no camera can have, or the distortion model where it is none of
+/// plumb_bob, rational_polynomial (8 coefficients) and equidistant.
 pf::PinholeCamera toCamera(const sensor_msgs::CameraInfo& info, bool rectified);
 
-/// K, D (plumb_bob), P and size of a camera.
+/// K, D, P and size of a camera.
 sensor_msgs::CameraInfo toCameraInfo(const pf::PinholeCamera& camera,
                                      const std_msgs::Header& header);
 

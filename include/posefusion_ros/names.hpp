@@ -10,6 +10,7 @@ namespace topics {
 constexpr char kColor[] = "rgb/image_color";
 constexpr char kDepth[] = "depth_registered/image";
 constexpr char kCameraInfo[] = "rgb/camera_info";
+constexpr char kDepthCameraInfo[] = "depth_registered/camera_info";
 // Gate.
 constexpr char kSharpColor[] = "sharp/image_color";
 constexpr char kSharpDepth[] = "sharp/depth";

@@ -40,9 +40,9 @@ class Parameters {
   std::string choice(const std::string& name, const std::string& fallback,
                      const std::vector<std::string>& words);
 
-  /// The chain's configuration: defaults, then the file that `config` names, then the groups, then
-  /// `mode`; each where it is not empty.
-  /// `groups` are those that this nodelet uses, for effective().
+  /// The chain's configuration: defaults, then the file that `config` names, then the settings of
+  /// that of `camera_settings` (see input_settings.hpp), then the groups, then `mode`; each where
+  /// it is not empty. `groups` are those that this nodelet uses, for effective().
   pf::Config config(const std::vector<std::string>& groups);
 
   /// Parameters that were set but that nobody asked for.

@@ -8,11 +8,40 @@
 
 namespace pf {
 
+std::optional<LensModel> lensModelNamed(const std::string& name) {
+  for (const char* known : {"plumb_bob", "rational_polynomial", "PinHole"}) {
+    if (name == known) return LensModel::kPolynomial;
+  }
+  for (const char* known : {"equidistant", "fisheye", "KannalaBrandt8"}) {
+    if (name == known) return LensModel::kEquidistant;
+  }
+  return std::nullopt;
+}
+
 bool PinholeCamera::isDistorted() const {
+  if (lens == LensModel::kEquidistant) return true;
   for (const double d : distortion) {
     if (d != 0.0) return true;
   }
   return false;
+}
+
+const char* PinholeCamera::lensName() const {
+  if (lens == LensModel::kEquidistant) return "equidistant";
+  const bool rational = distortion[5] != 0.0 || distortion[6] != 0.0 || distortion[7] != 0.0;
+  return rational ? "rational_polynomial" : "plumb_bob";
+}
+
+std::size_t PinholeCamera::lensCoefficients() const {
+  if (lens == LensModel::kEquidistant) return 4;
+  return lensName() == std::string("plumb_bob") ? 5 : 8;
+}
+
+PinholeCamera PinholeCamera::withoutDistortion() const {
+  PinholeCamera straight = *this;
+  straight.lens = LensModel::kPolynomial;
+  straight.distortion = {};
+  return straight;
 }
 
 PinholeCamera PinholeCamera::shrunk(int factor) const {
@@ -29,7 +58,7 @@ PinholeCamera PinholeCamera::shrunk(int factor) const {
 
 bool PinholeCamera::operator==(const PinholeCamera& other) const {
   return width == other.width && height == other.height && fx == other.fx && fy == other.fy &&
-         cx == other.cx && cy == other.cy && distortion == other.distortion;
+         cx == other.cx && cy == other.cy && lens == other.lens && distortion == other.distortion;
 }
 
 void validate(const PinholeCamera& camera) {

@@ -23,6 +23,21 @@ void convertRow(const Pixel* in, float* out, int width, float unit, float low, f
   }
 }
 
+/// Where the pixels of the rectified image are in the image of `camera`.
+void makeMaps(const PinholeCamera& camera, cv::Mat& map1, cv::Mat& map2) {
+  const cv::Mat K =
+      (cv::Mat_<double>(3, 3) << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  const cv::Size size(camera.width, camera.height);
+  const auto& d = camera.distortion;
+  if (camera.lens == LensModel::kEquidistant) {
+    cv::fisheye::initUndistortRectifyMap(K, std::vector<double>(d.begin(), d.begin() + 4),
+                                         cv::Mat(), K, size, CV_32FC1, map1, map2);
+    return;
+  }
+  cv::initUndistortRectifyMap(K, std::vector<double>(d.begin(), d.end()), cv::Mat(), K, size,
+                              CV_32FC1, map1, map2);
+}
+
 }  // namespace
 
 std::string defectOf(const RgbdFrame& frame) {
@@ -68,16 +83,12 @@ RgbdFrame Rectifier::rectify(const RgbdFrame& frame) {
   if (!frame.camera.isDistorted()) return frame;
   if (map1_.empty() || camera_ != frame.camera) {
     camera_ = frame.camera;
-    const cv::Mat K =
-        (cv::Mat_<double>(3, 3) << camera_.fx, 0, camera_.cx, 0, camera_.fy, camera_.cy, 0, 0, 1);
-    const std::vector<double> D(camera_.distortion.begin(), camera_.distortion.end());
-    cv::initUndistortRectifyMap(K, D, cv::Mat(), K, {camera_.width, camera_.height}, CV_32FC1,
-                                map1_, map2_);
+    makeMaps(camera_, map1_, map2_);
   }
   RgbdFrame out = frame;
   out.color = cv::Mat();
   out.depth = cv::Mat();
-  out.camera.distortion = {};
+  out.camera = frame.camera.withoutDistortion();
   cv::remap(frame.color, out.color, map1_, map2_, cv::INTER_LINEAR);
   cv::remap(frame.depth, out.depth, map1_, map2_, cv::INTER_NEAREST);
   return out;

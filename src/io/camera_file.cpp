@@ -3,7 +3,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <vector>
@@ -16,7 +15,12 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr std::array<const char*, 5> kDistortionNames = {"k1", "k2", "p1", "p2", "k3"};
+const Names kPolynomialNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+const Names kEquidistantNames = {"k1", "k2", "k3", "k4"};
+
+const Names& coefficientNames(LensModel lens) {
+  return lens == LensModel::kEquidistant ? kEquidistantNames : kPolynomialNames;
+}
 
 /// A camera file whose keys go by several names.
 class CameraReader {
@@ -48,6 +52,12 @@ class CameraReader {
     throw InputError(path_ + ": " + names.front() + " is missing, expected a number of pixels");
   }
 
+  std::optional<std::string> text(const std::string& name) const {
+    if (!root_[name]) return std::nullopt;
+    if (!root_[name].IsScalar()) throw InputError(path_ + ": " + name + " is no word");
+    return root_[name].as<std::string>();
+  }
+
   std::vector<double> list(const std::string& name) const {
     std::vector<double> values;
     if (name.empty() || !root_[name]) return values;
@@ -71,19 +81,31 @@ class CameraReader {
   YAML::Node root_;
 };
 
-std::array<double, 5> readDistortion(const CameraReader& reader, const std::string& path) {
-  std::array<double, 5> distortion{};
+void readLens(const CameraReader& reader, const std::string& path, PinholeCamera& camera) {
+  for (const char* key : {"distortion_model", "Camera.type"}) {
+    const auto model = reader.text(key);
+    if (!model) continue;
+    const auto lens = lensModelNamed(*model);
+    if (!lens) {
+      throw InputError(path + ": " + key + " is '" + *model +
+                       "', expected plumb_bob, rational_polynomial or equidistant");
+    }
+    camera.lens = *lens;
+  }
+  const Names& names = coefficientNames(camera.lens);
   const auto listed = reader.list("distortion_coefficients");
-  if (listed.size() > distortion.size()) {
+  if (listed.size() > names.size()) {
+    std::string expected;
+    for (const auto& name : names) expected += " " + name;
     throw InputError(path + ": distortion_coefficients has " + std::to_string(listed.size()) +
-                     " values, expected at most 5 (k1 k2 p1 p2 k3)");
+                     " values, expected at most " + std::to_string(names.size()) + ":" + expected);
   }
-  std::copy(listed.begin(), listed.end(), distortion.begin());
-  for (std::size_t i = 0; i < distortion.size(); ++i) {
-    const std::string name = kDistortionNames[i];
-    if (const auto value = reader.find({name, "Camera." + name})) distortion[i] = *value;
+  std::copy(listed.begin(), listed.end(), camera.distortion.begin());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (const auto value = reader.find({names[i], "Camera." + names[i]})) {
+      camera.distortion[i] = *value;
+    }
   }
-  return distortion;
 }
 
 }  // namespace
@@ -98,7 +120,7 @@ CameraFile loadCamera(const std::string& path) {
   camera.fy = reader.require({"fy", "Camera.fy"}, "camera_matrix", 4);
   camera.cx = reader.require({"cx", "Camera.cx"}, "camera_matrix", 2);
   camera.cy = reader.require({"cy", "Camera.cy"}, "camera_matrix", 5);
-  camera.distortion = readDistortion(reader, path);
+  readLens(reader, path, camera);
   file.depth_factor = reader.find({"depth_factor", "DepthMapFactor"});
   if (file.depth_factor && !(*file.depth_factor > 0 && std::isfinite(*file.depth_factor))) {
     throw InputError(path + ": depth_factor is " + std::to_string(*file.depth_factor) +
@@ -118,8 +140,9 @@ void saveCamera(const std::string& path, const CameraFile& file) {
   out.stream() << std::setprecision(17) << "width: " << c.width << "\nheight: " << c.height
                << "\nfx: " << c.fx << "\nfy: " << c.fy << "\ncx: " << c.cx << "\ncy: " << c.cy
                << "\n";
-  for (std::size_t i = 0; c.isDistorted() && i < c.distortion.size(); ++i) {
-    out.stream() << kDistortionNames[i] << ": " << c.distortion[i] << "\n";
+  if (c.isDistorted()) out.stream() << "distortion_model: " << c.lensName() << "\n";
+  for (std::size_t i = 0; c.isDistorted() && i < c.lensCoefficients(); ++i) {
+    out.stream() << coefficientNames(c.lens)[i] << ": " << c.distortion[i] << "\n";
   }
   if (file.depth_factor) out.stream() << "depth_factor: " << *file.depth_factor << "\n";
   out.commit();

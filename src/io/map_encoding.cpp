@@ -75,6 +75,7 @@ std::string encodePng(const cv::Mat& image) {
   return std::string(bytes.begin(), bytes.end());
 }
 
+// A map's camera is that of rectified frames: places of a distortion that is all zero.
 std::string encodeIntrinsics(const PinholeCamera& c) {
   Eigen::Matrix<double, kIntrinsics, 1> values;
   values << c.fx, c.fy, c.cx, c.cy, c.distortion[0], c.distortion[1], c.distortion[2],
@@ -116,7 +117,7 @@ SurfelArrays decodeSurfels(std::string_view bytes, int last_frame) {
 void decodeIntrinsics(std::string_view bytes, PinholeCamera& c) {
   const auto v = matrixOf<Eigen::Matrix<double, kIntrinsics, 1>>(bytes, "the camera");
   c.fx = v[0], c.fy = v[1], c.cx = v[2], c.cy = v[3];
-  for (std::size_t i = 0; i < c.distortion.size(); ++i) {
+  for (std::size_t i = 0; i < kIntrinsics - 4; ++i) {
     c.distortion[i] = v[static_cast<Eigen::Index>(4 + i)];
   }
 }

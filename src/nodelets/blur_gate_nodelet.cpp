@@ -8,7 +8,9 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/image_subscriber.hpp"
 #include "posefusion_ros/input_pairing.hpp"
+#include "posefusion_ros/input_settings.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/running_settings.hpp"
 #include "posefusion_ros/settings_server.hpp"
@@ -28,16 +30,14 @@ class BlurGateNodelet : public ChainNodelet {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
     config_ = parameters.config({"blur"}).blur;
-    const PairingSettings pairing = readPairing(parameters);
-    rectified_ = parameters.choice("input_rectified", "auto", {"auto", "yes", "no"});
-    require_same_frame_ = parameters.flag("require_same_frame", true);
+    input_ = readInput(parameters);
     missing_after_s_ = parameters.number("missing_after_s", 5.0, {0.1, 1e6});
     report(parameters);
 
     gate_ = std::make_unique<pf::BlurGate>(config_);
     InputPairing::Handlers handlers;
-    handlers.set = [this](const auto& color, const auto& depth, const auto& info) {
-      guarded(color->header, [&] { onSet(color, depth, info); });
+    handlers.set = [this](const InputPairing::Set& set) {
+      guarded(set.color.header, [&] { onSet(set); });
     };
     handlers.unused = [this](const std_msgs::Header& header, const std::string& reason) {
       reject(header, TrackingStatusMsg::BAD_INPUT, reason);
@@ -46,9 +46,9 @@ class BlurGateNodelet : public ChainNodelet {
       NODELET_WARN("stamps went back by %.3f s: the chain begins anew", seconds);
       gate_->reset();
     };
-    pairing_ = std::make_unique<InputPairing>(pairing, std::move(handlers));
+    pairing_ = std::make_unique<InputPairing>(input_.pairing, std::move(handlers));
 
-    const int queue = pairing.queue_size;
+    const int queue = input_.pairing.queue_size;
     score_publisher_ = handle.advertise<BlurScoreMsg>(topics::kBlurScore, queue);
     info_publisher_ = handle.advertise<sensor_msgs::CameraInfo>(topics::kSharpCameraInfo, queue);
     depth_publisher_ = handle.advertise<sensor_msgs::Image>(topics::kSharpDepth, queue);
@@ -59,39 +59,63 @@ class BlurGateNodelet : public ChainNodelet {
         [this](const GateSettings& settings) { gate_->set(settings.blur); });
     timer_ = handle.createWallTimer(ros::WallDuration(missing_after_s_),
                                     &BlurGateNodelet::tellMissing, this);
-    color_ = handle.subscribe(topics::kColor, queue, &BlurGateNodelet::onColor, this);
-    depth_ = handle.subscribe(topics::kDepth, queue, &BlurGateNodelet::onDepth, this);
-    info_ = handle.subscribe(topics::kCameraInfo, queue, &BlurGateNodelet::onInfo, this);
-    if (rectified_ == "auto") {
-      rectified_ = color_.getTopic().find("_rect") != std::string::npos ? "yes" : "no";
-    }
+    subscribe(handle);
   }
 
-  void onColor(const ImageConstPtr& image) { pairing_->addColor(image); }
-  void onDepth(const ImageConstPtr& image) { pairing_->addDepth(image); }
-  void onInfo(const CameraInfoConstPtr& info) { pairing_->addInfo(info); }
+  void subscribe(ros::NodeHandle& handle) {
+    const int queue = input_.pairing.queue_size;
+    // Before the first frame comes. Whether rectified: the raw name counts, remapped.
+    origin_ = " (colour " + handle.resolveName(input_.color_topic) + ", depth " +
+              handle.resolveName(input_.depth_topic) + ", camera_info " +
+              handle.resolveName(input_.camera_info_topic) + ")";
+    is_rectified_ = input_.input_rectified == "yes" ||
+                    (input_.input_rectified == "auto" &&
+                     handle.resolveName(input_.color_topic).find("_rect") != std::string::npos);
+    color_ = ImageSubscriber(handle, {input_.color_topic, input_.image_transport, queue, 0.0},
+                             [this](const InputImage& image) { pairing_->addColor(image); });
+    depth_ = ImageSubscriber(
+        handle, {input_.depth_topic, input_.depthTransport(), queue, input_.depth_stamp_offset_s},
+        [this](const InputImage& image) { pairing_->addDepth(image); });
+    info_ = handle.subscribe(input_.camera_info_topic, queue, &BlurGateNodelet::onInfo, this);
+    depth_info_ = handle.subscribe(input_.depth_camera_info_topic, queue,
+                                   &BlurGateNodelet::onDepthInfo, this);
+  }
 
-  void onSet(const ImageConstPtr& color, const ImageConstPtr& depth,
-             const CameraInfoConstPtr& info) {
+  void onInfo(const CameraInfoConstPtr& info) { pairing_->addInfo(info); }
+  void onDepthInfo(const CameraInfoConstPtr& info) { pairing_->addDepthInfo(info); }
+
+  void onSet(const InputPairing::Set& set) {
     sets_since_look_ = true;
-    const std::string color_frame = plainFrame(color->header.frame_id);
-    const std::string depth_frame = plainFrame(depth->header.frame_id);
-    if (require_same_frame_ && color_frame != depth_frame) {
+    const std_msgs::Header& header = set.color.header;
+    const std::string color_frame = plainFrame(header.frame_id);
+    const std::string depth_frame = plainFrame(set.depth.header.frame_id);
+    if (input_.require_same_frame && color_frame != depth_frame) {
       throw pf::InputError("colour is in frame '" + color_frame + "' but depth in '" + depth_frame +
                            "', expected depth registered to colour");
     }
-    const pf::PinholeCamera camera = toCamera(*info, rectified_ == "yes");
-    const pf::RgbdFrame frame = toFrame(color, depth, camera);
-    const pf::RgbdFrame straight = rectifier_.rectify(frame);
+    const pf::RgbdFrame straight = rectifier_.rectify(frameOf(set));
     const pf::BlurScore blur = gate_->judge(pf::measureSharpness(straight.color));
-    publishScore(color->header, blur);
+    publishScore(header, blur);
     if (!blur.sharp) {
       reject(
-          color->header, TrackingStatusMsg::BLURRED,
+          header, TrackingStatusMsg::BLURRED,
           "blurred: " + std::to_string(blur.measure) + " below " + std::to_string(blur.threshold));
       return;
     }
-    pass(straight, color, depth);
+    pass(straight, set);
+  }
+
+  pf::RgbdFrame frameOf(const InputPairing::Set& set) const {
+    try {
+      InputCamera camera;
+      camera.color = toCamera(*set.info, is_rectified_);
+      camera.depth_info = set.depth_info;
+      camera.rectified = is_rectified_;
+      camera.depth_unit_m = input_.depth_unit_m;
+      return toFrame(set.color, set.depth, camera);
+    } catch (const pf::InputError& error) {
+      throw pf::InputError(error.what() + origin_);
+    }
   }
 
   void publishScore(const std_msgs::Header& header, const pf::BlurScore& blur) {
@@ -106,15 +130,15 @@ class BlurGateNodelet : public ChainNodelet {
   }
 
   /// The stamp of the colour image names the frame from here on: depth takes it too.
-  void pass(const pf::RgbdFrame& frame, const ImageConstPtr& color, const ImageConstPtr& depth) {
-    const std_msgs::Header& header = color->header;
-    const bool same_color = frame.color.data == color->data.data();
-    const bool same_depth =
-        frame.depth.data == depth->data.data() && depth->header.stamp == header.stamp;
+  void pass(const pf::RgbdFrame& frame, const InputPairing::Set& set) {
+    const std_msgs::Header& header = set.color.header;
+    const ImageConstPtr color = set.color.raw(), depth = set.depth.raw();
+    const bool same_color = color && frame.color.data == color->data.data();
+    const bool same_depth = depth && frame.depth.data == depth->data.data() &&
+                            depth->header.stamp == header.stamp && frame.depth_unit_m == 1e-3;
     info_publisher_.publish(
         boost::make_shared<const sensor_msgs::CameraInfo>(toCameraInfo(frame.camera, header)));
-    depth_publisher_.publish(
-        same_depth ? depth : ImageConstPtr(toImage(frame.depth, depth->encoding, header)));
+    depth_publisher_.publish(same_depth ? depth : ImageConstPtr(toDepthImage(frame, header)));
     color_publisher_.publish(same_color ? color
                                         : ImageConstPtr(toImage(frame.color, "rgb8", header)));
     passed(header.stamp);
@@ -122,34 +146,41 @@ class BlurGateNodelet : public ChainNodelet {
 
   void tellMissing(const ros::WallTimerEvent&) {
     if (!sets_since_look_) {
-      NODELET_WARN("no complete frame for %.0f s. %s", missing_after_s_,
-                   pairing_
-                       ->describeArrivals({topicText(color_, "sensor_msgs/Image"),
-                                           topicText(depth_, "sensor_msgs/Image"),
-                                           topicText(info_, "sensor_msgs/CameraInfo")})
-                       .c_str());
+      NODELET_WARN(
+          "no complete frame for %.0f s. %s", missing_after_s_,
+          pairing_->describeArrivals({topicText(color_), topicText(depth_), infoText()}).c_str());
     }
     sets_since_look_ = false;
   }
 
   /// The topic, and where nobody publishes it, which ones could be meant.
-  std::string topicText(const ros::Subscriber& topic, const std::string& type) const {
-    const std::string name = topic.getTopic();
-    if (topic.getNumPublishers() > 0) return name;
-    return name + " (nobody publishes it" +
-           topicHint({name, type}, getNodeHandle().getNamespace()) + ")";
+  std::string topicText(const ImageSubscriber& image) const {
+    return image.hasPublisher() ? image.topic()
+                                : unpublished(image.topic(), image.type(), image.advice());
+  }
+  std::string infoText() const {
+    return info_.getNumPublishers() > 0
+               ? info_.getTopic()
+               : unpublished(info_.getTopic(), "sensor_msgs/CameraInfo", "");
+  }
+  std::string unpublished(const std::string& topic, const std::string& type,
+                          const std::string& advice) const {
+    return topic + " (nobody publishes it" + advice +
+           topicHint({topic, type}, getNodeHandle().getNamespace()) + ")";
   }
 
   pf::BlurConfig config_;
-  std::string rectified_;
-  bool require_same_frame_ = true;
+  InputSettings input_;
+  bool is_rectified_ = false;
+  std::string origin_;  ///< of the frames, for messages
   double missing_after_s_ = 5.0;
   bool sets_since_look_ = false;
   pf::Rectifier rectifier_;
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;
-  ros::Subscriber color_, depth_, info_;
+  ImageSubscriber color_, depth_;
+  ros::Subscriber info_, depth_info_;
   ros::WallTimer timer_;
   std::unique_ptr<SettingsServer<GateSettings>> settings_;
 };

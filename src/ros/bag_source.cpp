@@ -3,8 +3,6 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <rosbag/view.h>
-#include <sensor_msgs/CompressedImage.h>
-#include <sensor_msgs/Image.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +10,10 @@
 #include <limits>
 #include <map>
 
-#include "bag_images.hpp"
+#include "bag_cameras.hpp"
 #include "bag_topics.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
-#include "posefusion/io/camera_file.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "stamp_pairer.hpp"
@@ -61,6 +58,7 @@ class BagSource : public pf::FrameSource {
  public:
   BagSource(const std::string& path, const InputOptions& options)
       : path_(path),
+        depth_offset_s_(options.depth_stamp_offset_s),
         pairer_(static_cast<std::int64_t>(std::llround(options.max_pair_difference_s * 1e9))) {
     reading(path_, [&] {
       bag_.open(path_, rosbag::bagmode::Read);
@@ -68,8 +66,7 @@ class BagSource : public pf::FrameSource {
       rosbag::View colors(bag_, rosbag::TopicQuery(topics_.color));
       frame_count_ = colors.size();
       if (frame_count_ == 0) throw InputError("topic " + topics_.color + " has no message");
-      camera_ = options.camera_file.empty() ? recordedCamera()
-                                            : pf::loadCamera(options.camera_file).camera;
+      camera_ = recordedCamera(bag_, topics_, options.camera_file);
       view_.addQuery(bag_, rosbag::TopicQuery({topics_.color, topics_.depth}));
       position_ = view_.begin();
     });
@@ -128,27 +125,11 @@ class BagSource : public pf::FrameSource {
   }
 
  private:
-  pf::PinholeCamera recordedCamera() {
-    if (topics_.camera_info.empty()) {
-      throw InputError("there is no camera_info for " + topics_.color +
-                       ", expected a topic beside it, or a camera file (--camera)");
-    }
-    rosbag::View infos(bag_, rosbag::TopicQuery(topics_.camera_info));
-    const auto info = infos.size() > 0 ? infos.begin()->instantiate<sensor_msgs::CameraInfo>()
-                                       : sensor_msgs::CameraInfo::ConstPtr();
-    if (!info) throw InputError("topic " + topics_.camera_info + " has no message");
-    try {
-      return toCamera(*info, topics_.color.find("rect") != std::string::npos);
-    } catch (const InputError& error) {
-      throw InputError("topic " + topics_.camera_info + ": " + error.what());
-    }
-  }
-
   /// Takes in the next message; a colour image whose stamp goes back is a frame with a defect.
   std::optional<SourceFrame> readMessage() {
     const rosbag::MessageInstance message = *position_;
     const bool is_color = message.getTopic() == topics_.color;
-    auto image = is_color ? readColor(message) : readDepth(message);
+    auto image = readImage(message, is_color ? 0.0 : depth_offset_s_);
     ++position_;
     if (!image) return std::nullopt;
     Stream& stream = is_color ? color_ : depth_;
@@ -167,23 +148,21 @@ class BagSource : public pf::FrameSource {
   SourceFrame emptyFrame(std::int64_t stamp_ns) const {
     SourceFrame out;
     out.frame.stamp_ns = stamp_ns;
-    out.frame.camera = camera_;
+    out.frame.camera = camera_.color;
     return out;
   }
 
-  SourceFrame decode(const BagImage& color, const BagImage& depth) const {
+  SourceFrame decode(const InputImage& color, const InputImage& depth) const {
     SourceFrame out = emptyFrame(color.stamp_ns);
     try {
-      out.frame.color = color.decode();
-      out.frame.depth = depth.decode();
-      out.defect = pf::defectOf(out.frame);
+      out.frame = toFrame(color, depth, camera_);
+      // Pixels of a message are copied: they outlive it.
+      for (cv::Mat* image : {&out.frame.color, &out.frame.depth}) {
+        if (image->u == nullptr) *image = image->clone();
+      }
     } catch (const std::exception& error) {
-      out.defect = error.what();
+      out.defect = "frame " + pf::formatStamp(color.stamp_ns) + ": " + error.what();
     }
-    if (out.defect.empty()) return out;
-    out.defect = "frame " + pf::formatStamp(color.stamp_ns) + ": " + out.defect;
-    out.frame.color.release();
-    out.frame.depth.release();
     return out;
   }
 
@@ -203,9 +182,10 @@ class BagSource : public pf::FrameSource {
   BagTopics topics_;
   rosbag::View view_;
   rosbag::View::iterator position_;
-  StampPairer<BagImage> pairer_;
+  double depth_offset_s_;
+  StampPairer<InputImage> pairer_;
   Stream color_, depth_;
-  pf::PinholeCamera camera_;
+  InputCamera camera_;
   std::size_t frame_count_ = 0;
   bool finished_ = false;
 };
@@ -232,10 +212,8 @@ std::string recordedFrameId(const std::string& path, const BagTopics& topics) {
     rosbag::Bag bag(path, rosbag::bagmode::Read);
     rosbag::View colors(bag, rosbag::TopicQuery(chooseTopics(topicsOf(bag), topics).color));
     if (colors.size() == 0) return std::string();
-    const rosbag::MessageInstance first = *colors.begin();
-    if (const auto image = first.instantiate<sensor_msgs::Image>()) return image->header.frame_id;
-    const auto compressed = first.instantiate<sensor_msgs::CompressedImage>();
-    return compressed ? compressed->header.frame_id : std::string();
+    const auto first = readImage(*colors.begin(), 0.0);
+    return first ? first->header.frame_id : std::string();
   });
 }
 

@@ -31,7 +31,9 @@ const Names kColorNames = {"rgb/image_rect_color",
                            "rgb/image_color/compressed",
                            "rgb/image_raw/compressed",
                            "color/image_raw/compressed",
-                           "image_color/compressed"};
+                           "image_color/compressed",
+                           "qhd/image_color_rect",
+                           "qhd/image_color_rect/compressed"};
 const Names kDepthNames = {"depth_registered/image_rect",
                            "depth_registered/image_raw",
                            "depth_registered/image",
@@ -46,7 +48,12 @@ const Names kDepthNames = {"depth_registered/image_rect",
                            "depth_registered/image/compressedDepth",
                            "aligned_depth_to_color/image_raw/compressedDepth",
                            "depth/image_raw/compressedDepth",
-                           "depth/image/compressedDepth"};
+                           "depth/image/compressedDepth",
+                           "aligned_depth_to_color/image_raw/compressed",
+                           "depth_to_rgb/image_raw/compressed",
+                           "depth_to_rgb/image_raw/compressedDepth",
+                           "qhd/image_depth_rect",
+                           "qhd/image_depth_rect/compressed"};
 const Names kTruthNames = {"truth", "ground_truth", "groundtruth"};
 
 bool contains(const Names& names, const std::string& name) {
@@ -142,6 +149,9 @@ BagTopics chooseTopics(const TopicTypes& available, const BagTopics& given) {
     if (t.camera_info.empty()) t.camera_info = cameraInfoBeside(available, t.depth);
     if (t.camera_info.empty()) t.camera_info = findOnly(available, kCameraTypes);
   }
+  t.depth_camera_info = given.depth_camera_info.empty()
+                            ? cameraInfoBeside(available, t.depth)
+                            : checked(available, given.depth_camera_info, kCameraTypes);
   t.people = given.people.empty() ? findOnly(available, kPeopleTypes)
                                   : checked(available, given.people, kPeopleTypes);
   t.truth = given.truth.empty() ? findByName(available, kTruthNames, kTruthTypes)

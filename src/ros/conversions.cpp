@@ -4,6 +4,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <array>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/error.hpp"
@@ -35,39 +36,78 @@ void setIntrinsics(const sensor_msgs::CameraInfo& info, bool rectified, pf::Pinh
 }
 
 void setDistortion(const sensor_msgs::CameraInfo& info, pf::PinholeCamera& camera) {
+  // All zero means rectified, whatever the model, as image_geometry takes it.
   const auto is_used = [](double d) { return d != 0.0; };
   if (std::none_of(info.D.begin(), info.D.end(), is_used)) return;
-  const std::size_t known = camera.distortion.size();
-  const bool longer =
-      info.D.size() > known && std::any_of(info.D.begin() + known, info.D.end(), is_used);
-  if ((!info.distortion_model.empty() && info.distortion_model != "plumb_bob" &&
-       info.distortion_model != "rational_polynomial") ||
-      longer) {
+  const auto lens = info.distortion_model.empty() ? pf::LensModel::kPolynomial
+                                                  : pf::lensModelNamed(info.distortion_model);
+  const std::size_t known = lens == pf::LensModel::kEquidistant ? 4 : camera.distortion.size();
+  if (!lens ||
+      (info.D.size() > known && std::any_of(info.D.begin() + known, info.D.end(), is_used))) {
     throw InputError("camera_info: distortion model '" + info.distortion_model + "' with " +
                      std::to_string(info.D.size()) +
-                     " coefficients, expected plumb_bob with 5 (rectify with image_proc)");
+                     " coefficients, expected plumb_bob with 5, rational_polynomial with 8 or "
+                     "equidistant with 4 (rectify others with image_proc)");
   }
+  camera.lens = *lens;
   std::copy_n(info.D.begin(), std::min(known, info.D.size()), camera.distortion.begin());
+}
+
+/// A colour encoding that is converted.
+struct ColorEncoding {
+  const char* name;
+  int type;
+  int to_rgb;  ///< conversion of OpenCV, which names a Bayer pattern by the pixels (1, 1), (1, 2)
+};
+
+constexpr int kNoConversion = -1;
+constexpr std::array<ColorEncoding, 11> kColorEncodings = {{
+    {"rgb8", CV_8UC3, kNoConversion},
+    {"bgr8", CV_8UC3, cv::COLOR_BGR2RGB},
+    {"rgba8", CV_8UC4, cv::COLOR_RGBA2RGB},
+    {"bgra8", CV_8UC4, cv::COLOR_BGRA2RGB},
+    {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB},
+    {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2RGB},
+    {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2RGB},
+    {"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2RGB},
+    {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2RGB},
+    {"yuv422", CV_8UC2, cv::COLOR_YUV2RGB_UYVY},
+    {"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2RGB_YUYV},
+}};
+
+const ColorEncoding& encodingOf(const sensor_msgs::Image& image) {
+  std::string known;
+  for (const auto& encoding : kColorEncodings) {
+    if (image.encoding == encoding.name) return encoding;
+    known += (known.empty() ? "" : ", ") + std::string(encoding.name);
+  }
+  throw InputError("colour image: encoding '" + image.encoding + "', expected " + known);
 }
 
 }  // namespace
 
+// Not by cv_bridge: it knows neither yuv422_yuy2 nor every Bayer pattern in all its versions.
 cv::Mat toColor(const sensor_msgs::ImageConstPtr& image) {
-  const cv::Mat pixels = share(image);
-  if (pixels.empty() || image->encoding == enc::RGB8) return pixels;
-  int code = 0;
-  if (image->encoding == enc::BGR8) {
-    code = cv::COLOR_BGR2RGB;
-  } else if (image->encoding == enc::RGBA8) {
-    code = cv::COLOR_RGBA2RGB;
-  } else if (image->encoding == enc::BGRA8) {
-    code = cv::COLOR_BGRA2RGB;
-  } else {
-    throw InputError("colour image: encoding '" + image->encoding +
-                     "', expected rgb8, bgr8, rgba8 or bgra8");
+  if (!image || image->data.empty() || image->width == 0 || image->height == 0) return {};
+  const ColorEncoding& encoding = encodingOf(*image);
+  const std::size_t row = std::size_t{image->width} * CV_ELEM_SIZE(encoding.type);
+  if (image->step < row || image->data.size() < image->step * std::size_t{image->height}) {
+    throw InputError("image message: " + std::to_string(image->width) + "x" +
+                     std::to_string(image->height) + " of " + image->encoding + " with rows of " +
+                     std::to_string(image->step) + " bytes and " +
+                     std::to_string(image->data.size()) + " in all, expected more");
   }
+  const cv::Mat pixels(static_cast<int>(image->height), static_cast<int>(image->width),
+                       encoding.type, const_cast<std::uint8_t*>(image->data.data()), image->step);
+  if (encoding.to_rgb == kNoConversion) return pixels;
   cv::Mat rgb;
-  cv::cvtColor(pixels, rgb, code);
+  try {
+    cv::cvtColor(pixels, rgb, encoding.to_rgb);
+  } catch (const cv::Exception& error) {
+    throw InputError("colour image: " + std::to_string(image->width) + "x" +
+                     std::to_string(image->height) + " of " + image->encoding +
+                     " cannot be converted: " + error.err);
+  }
   return rgb;
 }
 
@@ -108,8 +148,8 @@ sensor_msgs::CameraInfo toCameraInfo(const pf::PinholeCamera& camera,
   info.header = header;
   info.width = camera.width;
   info.height = camera.height;
-  info.distortion_model = "plumb_bob";
-  info.D.assign(camera.distortion.begin(), camera.distortion.end());
+  info.distortion_model = camera.lensName();
+  info.D.assign(camera.distortion.begin(), camera.distortion.begin() + camera.lensCoefficients());
   info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
   info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0};

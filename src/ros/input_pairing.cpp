@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/input_pairing.hpp"
 
+#include <algorithm>
+#include <boost/make_shared.hpp>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 namespace posefusion_ros {
@@ -16,14 +19,16 @@ std::string seconds(double value) {
 
 }  // namespace
 
-PairingSettings readPairing(Parameters& parameters) {
-  PairingSettings s;
-  s.queue_size = parameters.integer("queue_size", s.queue_size, {1, 10000});
-  s.approximate = parameters.flag("approximate_sync", s.approximate);
-  s.max_interval_s = parameters.number("max_interval_s", s.max_interval_s, {0.0, 10.0});
-  s.time_jump_threshold_s =
-      parameters.number("time_jump_threshold_s", s.time_jump_threshold_s, {0.0, 1e6});
-  return s;
+void CameraInfos::add(const sensor_msgs::CameraInfoConstPtr& info, std::size_t kept) {
+  infos_.push_back(info);
+  while (infos_.size() > kept) infos_.pop_front();
+}
+
+sensor_msgs::CameraInfoConstPtr CameraInfos::find(const ros::Time& stamp) const {
+  const auto same = std::find_if(infos_.rbegin(), infos_.rend(),
+                                 [&](const auto& info) { return info->header.stamp == stamp; });
+  if (same != infos_.rend()) return *same;
+  return infos_.empty() ? sensor_msgs::CameraInfoConstPtr() : infos_.back();
 }
 
 InputPairing::InputPairing(const PairingSettings& settings, Handlers handlers)
@@ -37,7 +42,7 @@ void InputPairing::restart() {
   policy.setMaxIntervalDuration(
       ros::Duration(settings_.approximate ? settings_.max_interval_s : 0));
   synchronizer_ = std::make_unique<Synchronizer>(policy);
-  synchronizer_->registerCallback(&InputPairing::onSet, this);
+  synchronizer_->registerCallback(&InputPairing::onPair, this);
 }
 
 bool InputPairing::admit(Stream stream, const ros::Time& stamp, std::string& reason) {
@@ -51,13 +56,15 @@ bool InputPairing::admit(Stream stream, const ros::Time& stamp, std::string& rea
     arrivals.newest = stamp;
     return true;
   }
-  const double back_s = (arrivals.newest - stamp).toSec();
+  // Not by ros::Duration: it throws beyond 68 years.
+  const double back_s = arrivals.newest.toSec() - stamp.toSec();
   if (back_s <= settings_.time_jump_threshold_s) {
     reason = back_s > 0 ? "the stamp went back by " + seconds(back_s)
                         : "the stamp is that of the frame before";
     return false;
   }
   // The first stream that jumps takes the others along: their newest stamps are of the old time.
+  for (const auto& pair : std::exchange(uncalibrated_, {})) giveUp(pair.first->header);
   for (const std_msgs::Header& header : std::exchange(waiting_, {})) giveUp(header);
   for (Arrivals& each : arrivals_) each.newest = ros::Time();
   arrivals.newest = stamp;
@@ -66,36 +73,52 @@ bool InputPairing::admit(Stream stream, const ros::Time& stamp, std::string& rea
   return true;
 }
 
-void InputPairing::addColor(const sensor_msgs::ImageConstPtr& image) {
+void InputPairing::addColor(const InputImage& image) {
   std::string reason;
-  if (!admit(kColor, image->header.stamp, reason)) {
-    handlers_.unused(image->header, "colour image: " + reason);
+  if (!admit(kColor, image.header.stamp, reason)) {
+    handlers_.unused(image.header, "colour image: " + reason);
     return;
   }
-  waiting_.push_back(image->header);
-  synchronizer_->add<kColor>(ros::MessageEvent<const sensor_msgs::Image>(image));
-  while (waiting_.size() > static_cast<std::size_t>(settings_.queue_size)) {
+  waiting_.push_back(image.header);
+  pair<kColor>(image);
+  while (waiting_.size() > kept()) {
     const std_msgs::Header oldest = waiting_.front();
     waiting_.pop_front();
     giveUp(oldest);
   }
 }
 
-void InputPairing::addDepth(const sensor_msgs::ImageConstPtr& image) {
+void InputPairing::addDepth(const InputImage& image) {
   std::string reason;
-  if (!admit(kDepth, image->header.stamp, reason)) return;
-  synchronizer_->add<kDepth>(ros::MessageEvent<const sensor_msgs::Image>(image));
+  if (!admit(kDepth, image.header.stamp, reason)) return;
+  pair<kDepth>(image);
 }
 
+template <int stream>
+void InputPairing::pair(const InputImage& image) {
+  try {
+    synchronizer_->add<stream>(
+        ros::MessageEvent<const InputImage>(boost::make_shared<const InputImage>(image)));
+  } catch (const std::runtime_error&) {
+    // It takes differences of stamps, which throw beyond 68 years.
+    for (const std_msgs::Header& header : std::exchange(waiting_, {})) giveUp(header);
+    restart();
+  }
+}
+
+// Any stamp will do, 0 and old ones too: it may have been sent once.
 void InputPairing::addInfo(const sensor_msgs::CameraInfoConstPtr& info) {
-  std::string reason;
-  if (!admit(kInfo, info->header.stamp, reason)) return;
-  synchronizer_->add<kInfo>(ros::MessageEvent<const sensor_msgs::CameraInfo>(info));
+  ++arrivals_[kInfo].count;
+  arrivals_[kInfo].newest = info->header.stamp;
+  infos_.add(info, kept());
+  for (const auto& [color, depth] : std::exchange(uncalibrated_, {})) handOver(*color, *depth);
 }
 
-void InputPairing::onSet(const sensor_msgs::ImageConstPtr& color,
-                         const sensor_msgs::ImageConstPtr& depth,
-                         const sensor_msgs::CameraInfoConstPtr& info) {
+void InputPairing::addDepthInfo(const sensor_msgs::CameraInfoConstPtr& info) {
+  depth_infos_.add(info, kept());
+}
+
+void InputPairing::onPair(const Pointer& color, const Pointer& depth) {
   while (!waiting_.empty() && waiting_.front().stamp < color->header.stamp) {
     const std_msgs::Header passed = waiting_.front();
     waiting_.pop_front();
@@ -103,17 +126,28 @@ void InputPairing::onSet(const sensor_msgs::ImageConstPtr& color,
   }
   if (waiting_.empty()) return;  // given up already
   waiting_.pop_front();
-  handlers_.set(color, depth, info);
+  if (arrivals_[kInfo].count > 0) return handOver(*color, *depth);
+  uncalibrated_.emplace_back(color, depth);
+  if (uncalibrated_.size() <= kept()) return;
+  const std_msgs::Header oldest = uncalibrated_.front().first->header;
+  uncalibrated_.pop_front();
+  giveUp(oldest);
+}
+
+void InputPairing::handOver(const InputImage& color, const InputImage& depth) {
+  handlers_.set(
+      {color, depth, infos_.find(color.header.stamp), depth_infos_.find(depth.header.stamp)});
 }
 
 void InputPairing::giveUp(const std_msgs::Header& header) {
   const std::string span = settings_.approximate && settings_.max_interval_s > 0
                                ? "within " + seconds(settings_.max_interval_s)
                                : "of the same stamp";
-  std::string missing = "depth image and camera_info";
-  if (arrivals_[kDepth].count == 0 && arrivals_[kInfo].count > 0) missing = "depth image";
-  if (arrivals_[kDepth].count > 0 && arrivals_[kInfo].count == 0) missing = "camera_info";
-  handlers_.unused(header, "no " + missing + " " + span);
+  const bool no_info = arrivals_[kInfo].count == 0;
+  const bool no_depth = arrivals_[kDepth].count == 0;
+  handlers_.unused(header, no_info && !no_depth
+                               ? "no camera_info has come yet"
+                               : "no depth image " + span + (no_info ? " and no camera_info" : ""));
 }
 
 std::string InputPairing::describeArrivals(const std::array<std::string, 3>& topics) const {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "posefusion_ros/input_settings.hpp"
+
 namespace posefusion_ros {
 namespace {
 
@@ -104,6 +106,11 @@ pf::Config Parameters::config(const std::vector<std::string>& groups) {
   const auto defaults = pf::listFields(config);
   const std::string file = text("config", "");
   if (!file.empty()) pf::applyFile(config, file);
+  const std::string camera = values_.text("camera_settings", "");  // noted with the input
+  if (!camera.empty()) {
+    const YAML::Node settings = loadCameraSettings(camera).settings;
+    if (settings) pf::applyYaml(config, settings, camera + ": settings");
+  }
   YAML::Node tree(YAML::NodeType::Map);
   for (const auto& entry : tree_) {
     if (!entry.second.IsMap()) continue;

@@ -22,6 +22,8 @@ FeederSettings readFeederSettings() {
   s.input.topics.color = parameters.text("color_topic", "");
   s.input.topics.depth = parameters.text("depth_topic", "");
   s.input.topics.camera_info = parameters.text("camera_info_topic", "");
+  s.input.topics.depth_camera_info = parameters.text("depth_camera_info_topic", "");
+  s.input.depth_stamp_offset_s = parameters.number("depth_stamp_offset_s", 0.0, {-10.0, 10.0});
   s.manager = parameters.text("manager", "");
   s.ends = parameters.text("ends", "");
   s.stays = parameters.text("stays", "");

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "posefusion/pose/model_settings.hpp"
 #include "posefusion/slam/config.hpp"
 #include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/input_settings.hpp"
 #include "posefusion_ros/node_control.hpp"
 
 namespace {
@@ -130,6 +132,30 @@ std::optional<pf::PinholeCamera> checkMap(const Given& given) {
   return std::nullopt;
 }
 
+/// Its file is there and can be read. Where it is one of ours that is missing, the others are
+/// named.
+void checkCamera(const Given& given) {
+  const fs::path file = given["camera_settings"];
+  if (file.empty()) return;
+  if (!fs::exists(file) && file.stem() == given["camera"] && fs::exists(file.parent_path())) {
+    std::set<std::string> known;
+    for (const auto& entry : fs::directory_iterator(file.parent_path())) {
+      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem());
+    }
+    std::string list;
+    for (const auto& name : known) list += " " + name;
+    throw InputError("argument camera:=" + given["camera"] + ", expected one of" + list +
+                     ", or a file of your own (camera_settings:=FILE)");
+  }
+  XmlRpc::XmlRpcValue values;
+  for (const char* name :
+       {"camera_settings", "image_transport", "depth_image_transport", "depth_stamp_offset_s"}) {
+    if (!given[name].empty()) values[name] = given[name];
+  }
+  posefusion_ros::Parameters parameters(values, "slam.launch");
+  posefusion_ros::readInput(parameters);
+}
+
 void checkInput(const Given& given, const pf::Config& config,
                 const std::optional<pf::PinholeCamera>& of_map) {
   posefusion_ros::InputOptions options;
@@ -137,6 +163,7 @@ void checkInput(const Given& given, const pf::Config& config,
   options.topics.color = given["color_topic"];
   options.topics.depth = given["depth_topic"];
   options.topics.camera_info = given["camera_info_topic"];
+  options.topics.depth_camera_info = given["depth_camera_info_topic"];
   const std::string bag = given["bag"];
   const auto source = posefusion_ros::openInput(bag, options);
   if (config.pose.detector == "recorded" && source->people().empty()) {
@@ -153,6 +180,7 @@ void check(const std::string& launch_file, const Given& given) {
   given.checkFlags(given["flags"]);
   const pf::Config config = configOf(given);
   if (given["without_people_if_no_detector"] != "true") checkDetector(config.pose);
+  checkCamera(given);
   const auto of_map = checkMap(given);
   if (!given["bag"].empty()) checkInput(given, config, of_map);
   if (!given["output"].empty()) pf::RunFolder(given["output"]).removeIfEmpty();

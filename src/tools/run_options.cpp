@@ -31,6 +31,13 @@ void addTopicOptions(CLI::App& app, posefusion_ros::InputOptions& reading) {
   app.add_option("--color-topic", topics.color, "bag: colour images")->group("Bags");
   app.add_option("--depth-topic", topics.depth, "bag: registered depth images")->group("Bags");
   app.add_option("--camera-info-topic", topics.camera_info, "bag: the camera")->group("Bags");
+  app.add_option("--depth-camera-info-topic", topics.depth_camera_info,
+                 "bag: the camera of depth, where its images have another size")
+      ->group("Bags");
+  app.add_option("--depth-stamp-offset-s", reading.depth_stamp_offset_s,
+                 "bag: added to the stamps of depth before they are compared with those of colour")
+      ->group("Bags")
+      ->check(CLI::Range(-10.0, 10.0));
   app.add_option("--people-topic", topics.people, "bag: recorded People")->group("Bags");
   app.add_option("--truth-topic", topics.truth, "bag: true camera poses")->group("Bags");
   app.add_option("--max-pair-difference", reading.max_pair_difference_s,

@@ -97,9 +97,9 @@ class Chain {
     return load({"blur_gate", "pose_detector", "segmenter", "fusion"}) && isUp();
   }
   bool isUp() {
-    return waitUntil(
-        [this] { return status_.getNumPublishers() > 0 && color_.getNumSubscribers() > 0; });
+    return waitUntil([this] { return isReporting() && color_.getNumSubscribers() > 0; });
   }
+  bool isReporting() const { return status_.getNumPublishers() > 0; }
   bool load(const std::vector<std::string>& names) {
     for (const auto& nodelet : names) {
       if (!loader_->load(space_ + "/" + nodelet, "posefusion/" + nodelet, {}, {})) return false;

@@ -185,6 +185,33 @@ class Replay(unittest.TestCase):
                  "rviz:=false", *arguments], stdout=subprocess.PIPE, text=True, check=True)
             self.assertRegex(done.stdout, rf"fusion/map_frame: {frame}\n")
 
+    def slam(self, options, *arguments):
+        return subprocess.run(
+            ["roslaunch", *options, "posefusion", "slam.launch", "rviz:=false", "detector:=none",
+             *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, env=dict(os.environ, PWD=self.folder))
+
+    def test_slam_takes_the_settings_of_a_camera(self):
+        done = self.slam(["--dump-params"], "camera:=realsense_d4xx", "camera_name:=eye",
+                         "image_transport:=compressed", "depth_stamp_offset_s:=-0.01")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        for line in (r"blur_gate/camera_settings: \S+/config/cameras/realsense_d4xx.yaml",
+                     r"fusion/camera_settings: \S+/config/cameras/realsense_d4xx.yaml",
+                     r"blur_gate/camera_name: eye", r"blur_gate/image_transport: compressed",
+                     r"blur_gate/depth_stamp_offset_s: -0.01"):
+            self.assertRegex(done.stdout, line)
+        self.assertNotIn("depth_image_transport", done.stdout)
+        own = pathlib.Path(self.folder, "own.yaml")
+        own.write_text("input: {camera_name: eye, depth_unit: 2}")
+        for arguments, said in (
+                (("camera:=realsens",), "camera:=realsens, expected one of azure_kinect kinect_v2"),
+                (("camera_settings:=own.yaml",), self.folder + "/own.yaml: input.depth_unit"),
+                (("image_transport:=theora",), "'theora', expected one of raw, compressed")):
+            done = self.slam([], *arguments)
+            self.assertEqual(done.returncode, 1, arguments)
+            self.assertIn(said, done.stdout)
+            self.assertNotIn("process[", done.stdout, "nothing was started")
+
     def test_the_bag_writer_leaves_nothing_half_done(self):
         text = self.call(program("posefusion_to_bag"), self.folder + "/sequence",
                          self.folder + "/nowhere/x.bag", expect=1)

@@ -81,6 +81,43 @@ TEST_F(BagSourceTest, ReadsCompressedAndFloatImages) {
   EXPECT_TRUE(std::isnan(frames[0].frame.depth.at<float>(0, 0)));
 }
 
+TEST_F(BagSourceTest, DepthOfAnotherSizeIsReadWithItsCamera) {
+  BagFile bag(path());
+  bag.info();
+  bag.color(33 * kMs);
+  cv::Mat half;
+  cv::resize(depthAt(33 * kMs), half, {}, 0.5, 0.5, cv::INTER_NEAREST);
+  bag.write("/camera/depth_registered/image", *toImage(half, enc::TYPE_16UC1, headerAt(33 * kMs)));
+  bag.write("/camera/depth_registered/camera_info",
+            toCameraInfo(camera().shrunk(2), headerAt(33 * kMs)));
+  bag.close();
+  const auto frames = readAll(*openInput(path()));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].defect, "");
+  EXPECT_EQ(frames[0].frame.camera, camera().shrunk(2));
+  EXPECT_TRUE(samePixels(frames[0].frame.depth, half));
+  EXPECT_EQ(frames[0].frame.color.size(), half.size());
+}
+
+TEST_F(BagSourceTest, AnOffsetOfDepthIsTakenAwayBeforePairing) {
+  BagFile bag(path());
+  bag.info();
+  for (int i = 1; i <= 3; ++i) {
+    bag.color(i * 33 * kMs);
+    bag.depth(i * 33 * kMs + 33 * kMs);  // one frame late: else paired with the next colour image
+  }
+  bag.close();
+  InputOptions options;
+  options.depth_stamp_offset_s = -0.033;
+  const auto frames = readAll(*openInput(path(), options));
+  ASSERT_EQ(frames.size(), 3U);
+  for (int i = 1; i <= 3; ++i) {
+    const pf::RgbdFrame& frame = frames[static_cast<std::size_t>(i - 1)].frame;
+    EXPECT_EQ(frame.stamp_ns, i * 33 * kMs);
+    EXPECT_TRUE(samePixels(frame.depth, depthAt((i + 1) * 33 * kMs)));
+  }
+}
+
 TEST_F(BagSourceTest, TheFrameIdIsThatOfTheColorImages) {
   BagFile bag(path());
   bag.info();

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <boost/make_shared.hpp>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/error.hpp"
@@ -80,6 +83,78 @@ TEST(RosConversions, OtherColourOrdersGiveTheSamePixels) {
   EXPECT_TRUE(same(toColor(toImage(bgra, "bgra8", headerAt(0))), rgb));
 }
 
+TEST(RosConversions, GreyBecomesEqualChannels) {
+  const cv::Mat grey = noise(CV_8UC1);
+  const cv::Mat rgb = toColor(toImage(grey, "mono8", headerAt(0)));
+  for (int i = 0; i < 3; ++i) {
+    cv::Mat channel;
+    cv::extractChannel(rgb, channel, i);
+    EXPECT_TRUE(same(channel, grey));
+  }
+}
+
+/// One colour all over, as a mosaic: the pixels (0,0) (0,1) (1,0) (1,1) have the channels.
+cv::Mat mosaic(const cv::Vec3b& color, const std::array<int, 4>& channels) {
+  cv::Mat raw(8, 12, CV_8UC1);
+  for (int v = 0; v < raw.rows; ++v) {
+    for (int u = 0; u < raw.cols; ++u) {
+      raw.at<unsigned char>(v, u) = color[channels[static_cast<std::size_t>(2 * (v % 2) + u % 2)]];
+    }
+  }
+  return raw;
+}
+
+TEST(RosConversions, EachBayerPatternGivesItsColour) {
+  const cv::Vec3b color(200, 120, 40);
+  const cv::Mat expected(8, 12, CV_8UC3, cv::Scalar(200, 120, 40));
+  const std::map<std::string, std::array<int, 4>> patterns = {{"bayer_rggb8", {0, 1, 1, 2}},
+                                                              {"bayer_bggr8", {2, 1, 1, 0}},
+                                                              {"bayer_gbrg8", {1, 2, 0, 1}},
+                                                              {"bayer_grbg8", {1, 0, 2, 1}}};
+  for (const auto& [encoding, channels] : patterns) {
+    const auto image = toImage(mosaic(color, channels), "mono8", headerAt(0));
+    image->encoding = encoding;
+    EXPECT_TRUE(same(toColor(image), expected)) << encoding;
+  }
+}
+
+TEST(RosConversions, Yuv422GivesItsColourInBothOrders) {
+  // ITU-R BT.601 of red (255, 0, 0): Y 82, U 90, V 240.
+  const std::map<std::string, std::array<int, 4>> orders = {{"yuv422", {90, 82, 240, 82}},
+                                                            {"yuv422_yuy2", {82, 90, 82, 240}}};
+  for (const auto& [encoding, bytes] : orders) {
+    const auto image = boost::make_shared<sensor_msgs::Image>();
+    image->width = 12;
+    image->height = 8;
+    image->step = 24;
+    image->encoding = encoding;
+    for (int i = 0; i < 8 * 24; ++i) {
+      image->data.push_back(static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(i % 4)]));
+    }
+    const cv::Mat rgb = toColor(image);
+    ASSERT_EQ(rgb.type(), CV_8UC3);
+    const cv::Scalar mean = cv::mean(rgb);
+    EXPECT_NEAR(mean[0], 255, 3) << encoding;
+    EXPECT_NEAR(mean[1], 0, 3) << encoding;
+    EXPECT_NEAR(mean[2], 0, 3) << encoding;
+    image->data.resize(100);
+    EXPECT_NE(errorOf([&] { toColor(image); }).find("12x8 of " + encoding), std::string::npos);
+  }
+}
+
+TEST(RosConversions, RowsMayBePadded) {
+  const auto image = toImage(noise(CV_8UC3), "rgb8", headerAt(0));
+  const cv::Mat tight = toColor(image).clone();
+  auto padded = *image;
+  padded.step = image->step + 5;
+  padded.data.assign(padded.step * 8, 99);
+  for (std::size_t v = 0; v < 8; ++v) {
+    std::copy_n(image->data.begin() + v * image->step, image->step,
+                padded.data.begin() + v * padded.step);
+  }
+  EXPECT_TRUE(same(toColor(boost::make_shared<sensor_msgs::Image>(padded)), tight));
+}
+
 TEST(RosConversions, ErrorsNameTheEncodingAndTheSizes) {
   const auto color = toImage(noise(CV_8UC3), "rgb8", headerAt(0));
   const auto depth = toImage(noise(CV_16UC1), "16UC1", headerAt(0));
@@ -131,11 +206,35 @@ TEST(RosConversions, UselessCameraInfoIsAnErrorThatNamesTheField) {
   auto info = toCameraInfo(someCamera(), headerAt(0));
   info.K[0] = 0;
   EXPECT_NE(errorOf([&] { toCamera(info, false); }).find("fx is 0"), std::string::npos);
-  auto fisheye = toCameraInfo(someCamera(), headerAt(0));
-  fisheye.distortion_model = "equidistant";
-  fisheye.D = {0.1, 0, 0, 0};
-  EXPECT_NE(errorOf([&] { toCamera(fisheye, false); }).find("equidistant"), std::string::npos);
-  EXPECT_EQ(errorOf([&] { toCamera(fisheye, true); }), "");
+  auto other = toCameraInfo(someCamera(), headerAt(0));
+  other.distortion_model = "omni";
+  other.D = {0.1, 0, 0, 0};
+  EXPECT_NE(errorOf([&] { toCamera(other, false); }).find("'omni' with 4 coefficients, expected"),
+            std::string::npos);
+  EXPECT_EQ(errorOf([&] { toCamera(other, true); }), "");
+  other.distortion_model = "equidistant";
+  other.D = {0.1, 0, 0, 0, 0.1};
+  EXPECT_NE(errorOf([&] { toCamera(other, false); }).find("'equidistant' with 5 coefficients"),
+            std::string::npos);
+}
+
+TEST(RosConversions, EachLensModelGoesThereAndBack) {
+  auto camera = someCamera();
+  camera.distortion = {1, 2, 3, 4, 5, 6, 7, 8};
+  auto info = toCameraInfo(camera, headerAt(0));
+  EXPECT_EQ(info.distortion_model, "rational_polynomial");
+  EXPECT_EQ(info.D.size(), 8U);
+  EXPECT_EQ(toCamera(info, false), camera);
+  camera.lens = pf::LensModel::kEquidistant;
+  camera.distortion = {1, 2, 3, 4};
+  info = toCameraInfo(camera, headerAt(0));
+  EXPECT_EQ(info.distortion_model, "equidistant");
+  EXPECT_EQ(info.D.size(), 4U);
+  EXPECT_EQ(toCamera(info, false), camera);
+  EXPECT_FALSE(toCamera(info, true).isDistorted());
+  // Drivers say so of images that they rectify.
+  info.D.assign(4, 0.0);
+  EXPECT_FALSE(toCamera(info, false).isDistorted());
 }
 
 TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {

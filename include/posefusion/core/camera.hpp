@@ -3,11 +3,23 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
+#include <string>
 
 namespace pf {
 
-/// A pinhole camera with an optional plumb_bob distortion, optical frame (z forward, x right,
-/// y down), pixel centres at integer coordinates.
+/// How a lens bends rays, with OpenCV's formulas.
+enum class LensModel {
+  kPolynomial,   ///< radial and tangential: plumb_bob, and rational_polynomial with k4 k5 k6
+  kEquidistant,  ///< fisheye: the angle to the axis, not its tangent (Kannala and Brandt 2006)
+};
+
+/// By the names that ROS, OpenCV and ORB-SLAM give it: plumb_bob, rational_polynomial, PinHole;
+/// equidistant, fisheye, KannalaBrandt8. Nothing for another name.
+std::optional<LensModel> lensModelNamed(const std::string& name);
+
+/// A pinhole camera with an optional distortion, optical frame (z forward, x right, y down), pixel
+/// centres at integer coordinates.
 struct PinholeCamera {
   int width = 0;
   int height = 0;
@@ -15,10 +27,23 @@ struct PinholeCamera {
   double fy = 0.0;  ///< pixels
   double cx = 0.0;  ///< pixels
   double cy = 0.0;  ///< pixels
-  /// plumb_bob k1 k2 p1 p2 k3; all zero when the images are rectified.
-  std::array<double, 5> distortion{};
+  LensModel lens = LensModel::kPolynomial;
+  /// kPolynomial: k1 k2 p1 p2 k3 k4 k5 k6, all zero when the images are rectified.
+  /// kEquidistant: k1 k2 k3 k4.
+  std::array<double, 8> distortion{};
 
+  /// Whether images have to be rectified. Those of an equidistant lens always have.
   bool isDistorted() const;
+
+  /// What ROS calls the model: plumb_bob, rational_polynomial (where k4 k5 k6 are used) or
+  /// equidistant.
+  const char* lensName() const;
+
+  /// How many coefficients that model has: 5, 8 or 4.
+  std::size_t lensCoefficients() const;
+
+  /// The camera of the rectified images.
+  PinholeCamera withoutDistortion() const;
 
   /// The camera of an image shrunk by `factor` (2 = half the width), whose pixel (0, 0) averages
   /// the full image's pixels (0 .. factor - 1).
