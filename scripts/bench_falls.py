@@ -83,14 +83,17 @@ class Falls(Runs):
         times = [math.inf if fall["time_to_tracking_s"] is None else fall["time_to_tracking_s"]
                  for fall in seen]
         self.row(f"{name}: the map came into view by 80 %", len(seen), f"of {len(falls)}", digits=0)
-        self.row(f"{name}: from there to tracking, median",
-                 statistics.median(times) if times else None, "s", 0.5, digits=2)
-        self.row(f"{name}: from there to tracking, worst", max(times, default=None), "s", 2, digits=2)
+        if times:
+            self.row(f"{name}: from there to tracking, median", statistics.median(times), "s", 0.5,
+                     digits=2)
+            self.row(f"{name}: from there to tracking, worst", max(times), "s", 2, digits=2)
         for when, known, posed, bar in (
                 ("once it is up", "known_frames_once_up", "of_these_with_a_pose", 85),
                 ("since the loss", "known_frames_since_loss", "of_them_with_a_pose", None)):
             frames = sum(fall[known] for fall in falls)
-            share = 100 * sum(fall[posed] for fall in falls) / frames if frames else None
+            if not frames:
+                continue
+            share = 100 * sum(fall[posed] for fall in falls) / frames
             self.row(f"{name}: frames {when} with a pose, of those with 60 % in the map", share, "%",
                      bar, most=False, digits=1)
         self.row(f"{name}: wrong poses", sum(fall["wrong_poses"] for fall in falls), "", 0, digits=0)
