@@ -61,17 +61,19 @@ class Runs(Report):
     def evaluate(self, *arguments):
         return json.loads(call(PROGRAMS / "posefusion_evaluate", *arguments, "--json"))
 
-    def simulated(self, scenario, seed, duration=None):
+    def simulated(self, scenario, seed, duration=None, changes=(), name=""):
         """A simulated sequence: that of --sequences where it is there, or made, and kept until
-        what it is made from changes. `duration` in seconds; None: the scenario's own."""
-        given = self.options.sequences and self.options.sequences / f"{scenario}_{seed}"
+        what it is made from changes. `duration` in seconds; None: the scenario's own. `changes`:
+        further arguments of the simulator; they need a `name`."""
+        name = name or f"{scenario}_{seed}"
+        given = self.options.sequences and self.options.sequences / name
         if given and given.is_dir():
             return given
         duration = self.options.duration or duration
-        arguments = [scenario, "--seed", str(seed)]
+        arguments = [scenario, "--seed", str(seed), *changes]
         if duration:
             arguments += ["--duration", str(duration)]
-        folder = self.output / "_".join([scenario, str(seed)] + ([f"{duration:g}s"] if duration else []))
+        folder = self.output / "_".join([name] + ([f"{duration:g}s"] if duration else []))
         marker, wanted = folder / "made_from", fingerprint(scenario, arguments)
         if marker.exists() and marker.read_text() == wanted:
             return folder

@@ -3,8 +3,9 @@
 import csv
 import json
 
+from bench_falls import Falls
 from bench_report import call
-from bench_runs import PROGRAMS, Runs, note
+from bench_runs import PROGRAMS, note
 
 WALKING_BARS_M = {"walking_static": 0.005, "walking_xyz": 0.010, "walking_halfsphere": 0.016,
                   "walking_rpy": 0.020}
@@ -17,7 +18,7 @@ def states(folder):
         return list(csv.DictReader(file))
 
 
-class Walks(Runs):
+class Walks(Falls):
     def check_track(self, name, sequence, folder):
         """Coverage, wrong and false poses of a run, by posefusion_evaluate; draws the plan."""
         plan = folder / "plan.png"
@@ -84,6 +85,8 @@ class Walks(Runs):
                  "%", digits=1)
         self.row(f"{name}, lost frames found of those searched", summary["loops"]["places_found"],
                  f"of {summary['loops']['places_searched']}", digits=0)
+        self.fall_rows(name, self.fall_check(sequence, folder / "status.csv", "--map",
+                                             folder / "map.pfdb"))
 
     def come_back(self):
         """How soon a camera is found in a map made before: at its start, and after a fall."""

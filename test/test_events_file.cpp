@@ -17,6 +17,7 @@ TEST(EventsFile, TakesBlurredFramesAndFallsInOrder) {
     {"kind": "fall", "start": "4.0", "end": "5.0"}]})"));
   EXPECT_EQ(events.blurred_ns, (std::vector<std::int64_t>{1'500'000'000, 2'033'333'000}));
   EXPECT_EQ(events.fall_starts_ns, (std::vector<std::int64_t>{4'000'000'000, 9'500'000'000}));
+  EXPECT_EQ(events.fall_ends_ns, (std::vector<std::int64_t>{5'000'000'000, 12'000'000'000}));
 }
 
 TEST(EventsFile, WrongInputIsAnErrorThatNamesTheFile) {
@@ -27,6 +28,8 @@ TEST(EventsFile, WrongInputIsAnErrorThatNamesTheFile) {
   EXPECT_NE(said("{").find("e.json: "), std::string::npos);
   EXPECT_NE(said("{}").find("events"), std::string::npos);
   EXPECT_NE(said(R"({"events": [{"kind": "fall"}]})").find("start"), std::string::npos);
+  EXPECT_NE(said(R"({"events": [{"kind": "fall", "start": "1.0"}]})").find("end"),
+            std::string::npos);
   EXPECT_NE(errorOf([&] { loadEvents(folder / "none.json"); }).find("none.json"),
             std::string::npos);
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The shell scripts, and the rules that hold for every file of the repository."""
+import json
 import os
 import pathlib
 import re
@@ -129,6 +130,18 @@ class Bench(unittest.TestCase):
             self.assertIn("| two | 1 m | <= 2 | ok |", text)
             self.assertNotIn("old", text)
             self.assertNotIn("one", text)
+
+    def test_falls_are_of_all_kinds_and_the_same_every_time(self):
+        from bench_falls import fall_clips
+        clips = fall_clips()
+        self.assertEqual(clips, fall_clips())
+        falls = [json.loads(value.split("=", 1)[1])[0] for clip in clips for value in clip
+                 if value.startswith("camera.falls=")]
+        self.assertEqual(len(falls), 20)
+        self.assertEqual({fall["to"] for fall in falls}, {"forward", "backward", "sideways"})
+        turns = [fall["turn_deg"] for fall in falls]
+        self.assertTrue(-90 <= min(turns) < -60 and 60 < max(turns) <= 90, turns)
+        self.assertTrue(all(0 <= fall["skip_m"] <= 0.8 for fall in falls))
 
     def test_unknown_parts_are_refused(self):
         done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],

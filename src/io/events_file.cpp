@@ -18,13 +18,16 @@ RecordedEvents loadEvents(const std::string& path) {
       const std::int64_t start_ns = parseStamp(event.at("start").get<std::string>());
       const std::string kind = event.at("kind").get<std::string>();
       if (kind == "blurred") events.blurred_ns.push_back(start_ns);
-      if (kind == "fall") events.fall_starts_ns.push_back(start_ns);
+      if (kind != "fall") continue;
+      events.fall_starts_ns.push_back(start_ns);
+      events.fall_ends_ns.push_back(parseStamp(event.at("end").get<std::string>()));
     }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(path + ": " + error.what());
   }
   std::sort(events.blurred_ns.begin(), events.blurred_ns.end());
   std::sort(events.fall_starts_ns.begin(), events.fall_starts_ns.end());
+  std::sort(events.fall_ends_ns.begin(), events.fall_ends_ns.end());  // nobody falls while falling
   return events;
 }
 

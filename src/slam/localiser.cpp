@@ -9,8 +9,6 @@ namespace pf {
 namespace {
 
 constexpr double kNanosecond = 1e-9;
-// Of the frame before the first: no flow begins there, and trusted_ns_ is another one.
-constexpr std::int64_t kNoFrame = -1;
 // Where no corners tell of the motion, the camera may have done anything a robot does.
 constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
@@ -21,12 +19,6 @@ constexpr double kMaxReckoning_s = 0.6;
 constexpr int kManyCorners = 80;
 constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
-// After a loss an alignment has to look better than usual, so often in a row, before it is
-// believed.
-constexpr int kProofs = 10;
-constexpr int kProofsOfPlace = 3;  // where the place was already verified
-constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
-constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 constexpr int kProbationFrames = 60;
 
 Matrix6d diagonal(double sigma_m, double sigma_rad) {
@@ -52,16 +44,8 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
   return location;
 }
 
-void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
-  reset();
-  state_ = TrackingState::lost;
-  previous_.T_map_camera = T_map_located_ = T_map_camera;
-  previous_.stamp_ns = kNoFrame;
-  brightness_ = brightness;
-}
-
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                           bool forced, const ModelView& view, const ModelRenderer& render) {
+                           bool forced, const ModelView& view, const MapRenderers& render) {
   Location location;
   const bool fused_before = trusted_ns_ == previous_.stamp_ns;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
@@ -77,14 +61,15 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   Verdict verdict;
-  location.tracking = align(frame, prior, location.motion, render, verdict);
+  location.tracking = align(frame, prior, location.motion, render.model, verdict);
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;
   if (state_ == TrackingState::lost) {
-    prove(frame, prior, location, stamp_ns, elapsed_s);
+    prove(frame, prior, location, render);
+    if (location.is_return) trust(location, stamp_ns, elapsed_s);
   } else if (verdict.outcome == FrameOutcome::fused) {
     trust(location, stamp_ns, elapsed_s);
   } else {
@@ -192,54 +177,13 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   location.state = state_ = lost ? TrackingState::lost : TrackingState::doubtful;
   location.T_map_camera = T_map_located_;
   proofs_ = 0;
-}
-
-/// Lost: an alignment is believed once it has looked right for several frames that also fit each
-/// other.
-void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
-                      std::int64_t stamp_ns, double elapsed_s) {
-  const bool looks_right = location.outcome == FrameOutcome::fused &&
-                           (is_place_verified_ || isProof(location.tracking, frame.valid_pixels));
-  const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
-                                kProofStep_m, kProofStep_rad);
-  // A suggested place is better known than where the camera went from it.
-  const bool fits = follows || std::exchange(is_suggested_, false);
-  proofs_ = looks_right ? (fits ? proofs_ + 1 : 1) : 0;
-  is_place_verified_ = is_place_verified_ && looks_right && fits;
-  if (proofs_ >= kProofs) {
-    frames_since_return_ = 0;
-    location.is_return = true;
-    trust(location, stamp_ns, elapsed_s);
-    return;
-  }
-  // Good enough to track on is not good enough to come back: only `trust` lets a frame be fused.
-  if (location.outcome == FrameOutcome::fused) {
-    location.outcome = FrameOutcome::unproven;
-    location.detail = std::to_string(proofs_) + " of " + std::to_string(kProofs) + " frames";
-  }
-  previous_.T_map_camera = looks_right ? location.tracking.T_map_camera : prior.T_map_camera;
-  previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
-  previous_.velocity.setZero();
-  location.state = TrackingState::lost;
-  location.T_map_camera = T_map_located_;
+  is_suggested_ = is_place_verified_ = false;
 }
 
 void Localiser::move(const Eigen::Isometry3d& T_new_old) {
   previous_.T_map_camera = T_new_old * previous_.T_map_camera;
   T_map_located_ = T_new_old * T_map_located_;
   landmarks_.move(T_new_old);
-}
-
-void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
-                        const Eigen::Isometry3d& T_reckoned) {
-  if (state_ != TrackingState::lost || proofs_ > 0) return;
-  const Eigen::Isometry3d T_map_now = T_map_camera * T_reckoned.inverse() * T_reckoned_;
-  landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
-  previous_.T_map_camera = T_map_now;
-  previous_.covariance = diagonal(kSuggested_m, kSuggested_rad);
-  previous_.velocity.setZero();
-  proofs_ = kProofs - kProofsOfPlace;
-  is_suggested_ = is_place_verified_ = true;
 }
 
 void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,

@@ -41,24 +41,31 @@ RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
   if (step.translation().norm() < kSameViewShift_m && angleOf(step) < kSameViewTurn_rad) {
     return {model, view.T_map_camera};
   }
-  renderer.render(map, frame.camera, T, kViewOptions, elsewhere);
-  model_elsewhere.assign(elsewhere);
+  model_elsewhere.assign(viewFrom(T));
   return {model_elsewhere, T};
+}
+
+const ModelView& Mapper::State::viewFrom(const Eigen::Isometry3d& T) {
+  renderer.render(map, frame.camera, T, kViewOptions, elsewhere);
+  return elsewhere;
 }
 
 Location Mapper::State::locate(const StaticFrame& input) {
   const std::int64_t stamp_ns = input.frame.stamp_ns;
   if (map.frame() >= 0) {
     return localiser.locate(frame, stamp_ns, input.flow, input.forced, view,
-                            [this](const Eigen::Isometry3d& T) { return modelFrom(T); });
+                            {[this](const auto& T) {
+      return modelFrom(T); },
+                             [this](const auto& T) -> auto& { return viewFrom(T);
   }
-  const auto needed =
-      config.tracking.min_valid_fraction * static_cast<double>(frame.depth_m.total());
-  if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
-  Location nowhere;
-  nowhere.outcome = FrameOutcome::no_depth;
-  nowhere.T_map_camera = T_map_start;
-  return nowhere;
+});
+}  // namespace pf
+const auto needed = config.tracking.min_valid_fraction * static_cast<double>(frame.depth_m.total());
+if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
+Location nowhere;
+nowhere.outcome = FrameOutcome::no_depth;
+nowhere.T_map_camera = T_map_start;
+return nowhere;
 }
 
 void Mapper::State::fuse(const StaticFrame& input, const Location& location) {

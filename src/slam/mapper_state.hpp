@@ -66,6 +66,7 @@ struct Mapper::State {
 
   std::string defect(const StaticFrame& input) const;
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
+  const ModelView& viewFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
   void follow(const Location& location);

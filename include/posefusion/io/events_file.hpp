@@ -11,6 +11,7 @@ namespace pf {
 struct RecordedEvents {
   std::vector<std::int64_t> blurred_ns;      ///< stamps of the frames that are blurred
   std::vector<std::int64_t> fall_starts_ns;  ///< when the camera begins to fall
+  std::vector<std::int64_t> fall_ends_ns;    ///< when it is up again, of each fall
 };
 
 /// Reads `events.json` as the simulator writes it (docs/simulator.md):

@@ -22,6 +22,12 @@ struct RenderedModel {
 /// Renders the map from about this pose: the answer may be of another pose nearby. Valid until the
 /// next call.
 using ModelRenderer = std::function<RenderedModel(const Eigen::Isometry3d& T_map_camera)>;
+/// Renders the map from exactly this pose. Valid until the next call, of a ModelRenderer too.
+using ViewRenderer = std::function<const ModelView&(const Eigen::Isometry3d& T_map_camera)>;
+struct MapRenderers {
+  ModelRenderer model;
+  ViewRenderer view;
+};
 
 /// Where a frame is, and how far that is believed.
 struct Location {
@@ -55,7 +61,7 @@ class Localiser {
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
   /// the last fused frame. A `forced` frame (see BlurScore) is not believed enough to be fused.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                  bool forced, const ModelView& view, const ModelRenderer& render);
+                  bool forced, const ModelView& view, const MapRenderers& render);
 
   TrackingState state() const { return state_; }
   /// Between the map and the last frame that was believed.
@@ -98,7 +104,7 @@ class Localiser {
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
-             std::int64_t stamp_ns, double elapsed_s);
+             const MapRenderers& render);
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
                 const Location& location, std::int64_t stamp_ns);
 

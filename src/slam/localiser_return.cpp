@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a lost camera comes back.
+#include <algorithm>
+#include <utility>
+
+#include "posefusion/loop/verify.hpp"
+#include "posefusion/slam/localiser.hpp"
+
+namespace pf {
+namespace {
+
+// Of the frame before the first: no flow begins there, and trusted_ns_ is another one.
+constexpr std::int64_t kNoFrame = -1;
+// After a loss an alignment has to look better than usual, so often in a row, before it is
+// believed.
+constexpr int kProofs = 10;
+constexpr int kProofsOfPlace = 3;  // where the place was already verified
+constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
+constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
+
+/// What speaks against the pose of an alignment, asked as strictly as of a place that was searched.
+PlaceDoubt doubtOf(const WorkingFrame& frame, const TrackingResult& tracking,
+                   const ViewRenderer& render) {
+  PlaceVerdict verdict;
+  verdict.alignment = tracking;
+  verdict.agreement = compareViews(frame, render(tracking.T_map_camera));
+  return judgePlace(verdict, tracking.T_map_camera, {});
+}
+
+}  // namespace
+
+void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
+  reset();
+  state_ = TrackingState::lost;
+  previous_.T_map_camera = T_map_located_ = T_map_camera;
+  previous_.stamp_ns = kNoFrame;
+  brightness_ = brightness;
+}
+
+/// Lost: an alignment is believed once it has looked right for several frames that also fit each
+/// other. Where no search has verified the place, the last of them is: tracking is content with
+/// less, and an alignment that slid along a wall or a floor looks right to it in every frame.
+void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
+                      const MapRenderers& render) {
+  const bool looks_right = location.outcome == FrameOutcome::fused &&
+                           (is_place_verified_ || isProof(location.tracking, frame.valid_pixels));
+  const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
+                                kProofStep_m, kProofStep_rad);
+  // A suggested place is better known than where the camera went from it.
+  const bool fits = follows || std::exchange(is_suggested_, false);
+  proofs_ = looks_right ? (fits ? proofs_ + 1 : 1) : 0;
+  is_place_verified_ = is_place_verified_ && looks_right && fits;
+  if (proofs_ >= kProofs) {
+    const PlaceDoubt doubt =
+        is_place_verified_ ? PlaceDoubt::none : doubtOf(frame, location.tracking, render.view);
+    location.is_return = doubt == PlaceDoubt::none;
+    if (location.is_return) {
+      frames_since_return_ = 0;
+      return;
+    }
+    proofs_ = 0;
+    location.outcome = FrameOutcome::disagrees;
+    location.detail = "after " + std::to_string(kProofs) +
+                      " frames, the map from there: " + std::string(name(doubt));
+  }
+  // Good enough to track on is not good enough to come back: only `trust` lets a frame be fused.
+  if (location.outcome == FrameOutcome::fused) {
+    location.outcome = FrameOutcome::unproven;
+    location.detail = std::to_string(proofs_) + " of " + std::to_string(kProofs) + " frames";
+  }
+  previous_.T_map_camera = looks_right ? location.tracking.T_map_camera : prior.T_map_camera;
+  previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
+  previous_.velocity.setZero();
+  location.state = TrackingState::lost;
+  location.T_map_camera = T_map_located_;
+}
+
+void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
+                        const Eigen::Isometry3d& T_reckoned) {
+  // What only looks right gives way to a place that was verified.
+  if (state_ != TrackingState::lost || is_place_verified_) return;
+  const Eigen::Isometry3d T_map_now = T_map_camera * T_reckoned.inverse() * T_reckoned_;
+  landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
+  previous_.T_map_camera = T_map_now;
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(kSuggested_m * kSuggested_m),
+      Eigen::Vector3d::Constant(kSuggested_rad * kSuggested_rad);
+  previous_.covariance = variance.asDiagonal();
+  previous_.velocity.setZero();
+  proofs_ = kProofs - kProofsOfPlace;
+  is_suggested_ = is_place_verified_ = true;
+}
+
+}  // namespace pf
