@@ -125,8 +125,10 @@ void SurfelsDisplay::show() {
   if (!cloud_ || !discs_) return;
   discs_->hideBacks(hide_backs_->getBool());
   const auto most = static_cast<std::size_t>(max_discs_->getInt());
-  discs_->set(thinned(*cloud_, keep_fluid_->getBool() ? std::min(most, fluid_discs_) : most));
-  setStatus(rviz::StatusProperty::Ok, "Message", QString::number(cloud_->width) + " surfels");
+  const auto shown = thinned(*cloud_, keep_fluid_->getBool() ? std::min(most, fluid_discs_) : most);
+  discs_->set(shown);
+  setStatus(rviz::StatusProperty::Ok, "Message",
+            QString("%1 of %2 surfels shown").arg(shown.size()).arg(cloud_->width));
   const auto sample = thinned(*cloud_, kSample);
   const Eigen::AlignedBox3f box = boundsOf(sample);
   grid_->getSceneNode()->setVisible(false);
