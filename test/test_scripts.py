@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -184,6 +185,13 @@ class Repository(unittest.TestCase):
         done = subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], cwd=ROOT, text=True,
                               stderr=subprocess.PIPE)
         self.assertEqual(done.returncode, 0, "run clang-format -i:\n" + done.stderr[:2000])
+
+    def test_catkin_lint_has_nothing_to_say(self):
+        if not shutil.which("catkin_lint"):
+            self.skipTest("no catkin_lint")
+        done = subprocess.run(["catkin_lint", "--strict", "-q", str(ROOT)], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_every_source_names_its_licence(self):
         for path in code_files():
