@@ -131,6 +131,30 @@ class Bench(unittest.TestCase):
             self.assertNotIn("old", text)
             self.assertNotIn("one", text)
 
+    def test_what_becomes_of_live_frames_is_read_from_the_feeder(self):
+        from bench_live import understand
+        said = ("[INFO]: 900 frames sent, 664 fused, 236 dropped: fusion fell behind; from frame to TF 80.1 ms median, "
+                "99.0 ms 99 %")
+        self.assertEqual(understand(said), (
+            {"sent": 900, "fused": 664, "dropped: fusion fell behind": 236}, 80.1, 99.0))
+
+    def test_transforms_and_topics_that_cross_are_seen(self):
+        from bench_soak import crossed_topics, crossed_transforms
+        text = "".join(f'frame_id: "{parent}"\n    child_frame_id: "{child}"\n'
+                       for parent, child in (("left_map", "left_eye"), ("right_map", "right_eye")))
+        self.assertEqual(crossed_transforms(text, ("left", "right")), set())
+        self.assertEqual(crossed_transforms(text.replace("right_map", "left_map"), ("left", "right")),
+                         {"left_map -> right_eye", "right_map -> right_eye"})
+
+        class Session:
+            class master:
+                @staticmethod
+                def getSystemState(_):
+                    mask = ["/left/mask", ["/left/segmenter"]]
+                    return 1, "", [[mask], [["/left/mask", ["/right/fusion"]], ["/tf", ["/right/fusion"]]], []]
+
+        self.assertEqual(crossed_topics(Session, ("left", "right")), {"/left/mask"})
+
     def test_unknown_parts_are_refused(self):
         done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],
                               stderr=subprocess.PIPE, text=True)
