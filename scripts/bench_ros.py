@@ -15,6 +15,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PATIENCE_S = 60
 
 
+def hear_interrupts():
+    """A bench in the background ignores them, and so would all that it starts: it ends them so."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Session:
     """A ROS master and the programs started beside it; all of them end with the session."""
 
@@ -50,7 +55,8 @@ class Session:
         with open(self.folder / f"{name}.log", "w", encoding="utf-8") as log:
             process = subprocess.Popen(
                 ["bash", "-c", f"source '{ROOT}/devel/setup.bash' && exec \"$@\"", "bash", *map(str, command)],
-                cwd=self.folder, env=self.environment, stdout=log, stderr=subprocess.STDOUT)
+                cwd=self.folder, env=self.environment, stdout=log, stderr=subprocess.STDOUT,
+                preexec_fn=hear_interrupts)
         self.processes.append(process)
         return process
 
