@@ -1,71 +1,88 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The part `live` of scripts/bench: the nodelets fed at 30 frames a second, as by a camera. What
-becomes of each frame, and how long after it was sent its transform is there."""
+"""The parts `live` and `start` of scripts/bench: the nodelets fed at 30 frames a second, as by a
+camera. What becomes of each frame, how long after it was sent its transform is there, and how soon
+after roslaunch the first pose comes."""
 import os
-import pathlib
 import re
 import shutil
-import socket
-import sys
+import statistics
+import time
 
 from bench_report import Failed, call
+from bench_ros import ROOT, Session, there_and_back
+from bench_runs import PROGRAMS, Runs, note
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 FRAMES = 900
-PERIOD_S = 1 / 30
+RATE_HZ = 30
 TIME_LIMIT_S = 600
+LAUNCHES = 3
+TOPICS = {"color_topic": "/camera/rgb/image_color", "depth_topic": "/camera/depth_registered/image",
+          "camera_info_topic": "/camera/rgb/camera_info"}
 
 
-class Live:
-    """To be mixed into scripts/bench's Bench."""
-
+class Live(Runs):
     def live(self):
-        sequence, bag = self.output / "live_input", self.output / "live.bag"
-        there_and_back(self.options.data / "kitchen_people", sequence, FRAMES)
-        call(ROOT / "devel" / "lib" / "posefusion" / "posefusion_to_bag", sequence, bag)
-        print("  feeding the nodelets at 30 frames a second ...", file=sys.stderr)
-        said = replay(bag, "detector:=network", f"model:={self.options.model}",
-                      f"output:={self.output / 'live'}")
+        kitchen = self.output / "live_input"
+        there_and_back(self.options.data / "kitchen_people", kitchen, FRAMES, RATE_HZ)
+        self.live_rows("walking_static, people recorded", self.simulated("walking_static", self.options.seeds[0]),
+                       True, "detector:=recorded")
+        self.live_rows("kitchen_people there and back, embedded", kitchen, False, "detector:=embedded")
+        self.live_rows("kitchen_people there and back, network", kitchen, False, "detector:=network",
+                       f"model:={self.options.model}")
+
+    def live_rows(self, name, sequence, has_bars, *arguments):
+        bag = self.output / "live.bag"
+        call(PROGRAMS / "posefusion_to_bag", sequence, bag)
+        note(f"feeding the nodelets at 30 frames a second: {name}")
+        with Session(self.output / "live_session") as session:
+            said = session.run("replay", "roslaunch", "posefusion", "replay.launch", f"bag:={bag}", "lossless:=false",
+                               f"output:={self.output / 'live'}", *arguments, timeout=TIME_LIMIT_S)
         bag.unlink()
-        outcomes, median_ms, most_ms = understand(said)
-        for what, count in outcomes:
-            self.row(f"live, 30 Hz, kitchen_people there and back, frames {what}", count, "", digits=0)
-        self.row("live, 30 Hz, from a frame to its transform, median", median_ms, "ms", digits=1)
-        self.row("live, 30 Hz, from a frame to its transform, 99 % within", most_ms, "ms", digits=1)
+        counts, median_ms, most_ms = understand(said)
+        for what, count in counts.items():
+            self.row(f"live, 30 Hz, {name}: frames {what}", count, "", digits=0)
+        dropped = sum(count for what, count in counts.items() 
+                      if what.startswith("dropped") or what == "without a status")
+        self.row(f"live, 30 Hz, {name}: frames dropped", dropped, "", 0 if has_bars else None, digits=0)
+        self.row(f"live, 30 Hz, {name}: from a frame to its transform, median", median_ms, "ms", digits=1)
+        self.row(f"live, 30 Hz, {name}: from a frame to its transform, 99 % within", most_ms, "ms",
+                 100 if has_bars else None, digits=1)
 
+    def start(self):
+        """From the call of `roslaunch posefusion slam.launch`, where frames come already, to a pose."""
+        sequence, bag = self.output / "start_input", self.output / "start.bag"
+        there_and_back(self.options.data / "kitchen_people", sequence, FRAMES, RATE_HZ)
+        call(PROGRAMS / "posefusion_to_bag", sequence, bag)
+        times_s, loads = [], []
+        for i in range(LAUNCHES):
+            note(f"launch {i + 1} of {LAUNCHES}")
+            loads.append(os.getloadavg()[0])
+            times_s.append(self.time_to_pose_s(bag))
+        bag.unlink()
+        self.row("roslaunch slam.launch to the first pose, median of 3", statistics.median(times_s), "s", 5, digits=1)
+        self.row("the same, processes that waited for the 2 cores besides (load)", max(loads), "", digits=1)
 
-def there_and_back(source, folder, frames):
-    """A TUM folder with the images of another, forwards and backwards in turn, 30 a second."""
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    for name in ("rgb", "depth", "camera.yaml"):
-        (folder / name).symlink_to(source / name)
-    lines = [line.split() for line in (source / "associations.txt").read_text().splitlines()
-             if line and not line.startswith("#")]
-    with open(folder / "associations.txt", "w", encoding="ascii") as out:
-        for i in range(frames):
-            at = i % (2 * len(lines) - 2)
-            _, color, _, depth = lines[at if at < len(lines) else 2 * len(lines) - 2 - at]
-            stamp = f"{1 + i * PERIOD_S:.6f}"
-            out.write(f"{stamp} {color} {stamp} {depth}\n")
-
-
-def replay(bag, *arguments):
-    """What roslaunch says of a replay in real time."""
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        port = probe.getsockname()[1]
-    environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_MASTER_URI": f"http://localhost:{port}"}
-    return call("bash", "-c", f"source '{ROOT}/devel/setup.bash' && exec roslaunch \"$@\" 2>&1", "bash", "--port",
-                str(port), "posefusion", "replay.launch", f"bag:={bag}", "lossless:=false", *arguments,
-                timeout=TIME_LIMIT_S, env=environment)
+    def time_to_pose_s(self, bag):
+        folder = self.output / "start_session"
+        shutil.rmtree(folder, ignore_errors=True)
+        with Session(folder) as session:
+            session.start("play", "rosbag", "play", "--quiet", bag)
+            session.start("pose", "rostopic", "echo", "-n", "1", "/posefusion/pose/header")
+            session.wait_for(lambda: "not appear to be published" in session.said("pose"), "rostopic")
+            began = time.monotonic()
+            launch = session.start("launch", "roslaunch", "posefusion", "slam.launch", "rviz:=false",
+                                   *(f"{name}:={topic}" for name, topic in TOPICS.items()))
+            session.wait_for(lambda: "frame_id" in session.said("pose") or launch.poll() is not None, "a pose")
+            if launch.poll() is not None:
+                raise Failed(f"slam.launch: {session.said('launch')[-500:]}")
+            return time.monotonic() - began
 
 
 def understand(said):
     """The feeder's sentence "900 frames sent, 636 fused, ...; from frame to TF 80.1 ms median, 99.0 ms
-    99 %": [("sent", 900), ("fused", 636), ...] and the two times in milliseconds."""
+    99 %": {"sent": 900, "fused": 636, ...} and the two times in milliseconds."""
     found = re.search(r"(\d+) frames (sent.*); from frame to TF ([0-9.]+) ms median, ([0-9.]+) ms 99 %", said)
     if not found:
         raise Failed(f"no figures from the feeder: {said[-500:]}")
     counted = re.findall(r"(\d+) ([^,]+)", f"{found[1]} {found[2]}")
-    return [(what, int(count)) for count, what in counted], float(found[3]), float(found[4])
+    return {what: int(count) for count, what in counted}, float(found[3]), float(found[4])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "joined_people.hpp"
+#include "../src/pose/joined_people.hpp"
 
 #include <gtest/gtest.h>
 

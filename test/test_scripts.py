@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The shell scripts, and the rules that hold for every file of the repository."""
-import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -107,49 +106,6 @@ class Scripts(unittest.TestCase):
             self.assertEqual(done.returncode, 1, "a report cut short is a failed test")
 
 
-class Bench(unittest.TestCase):
-    def setUp(self):
-        sys.path.insert(0, str(ROOT / "scripts"))
-        self.addCleanup(sys.path.remove, str(ROOT / "scripts"))
-
-    def test_a_sequence_is_made_again_only_for_its_own_scenario_and_arguments(self):
-        from bench_runs import fingerprint
-        self.assertEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["a"]))
-        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["b"]))
-        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("loop_room", ["a"]))
-
-    def test_the_table_keeps_the_text_before_it(self):
-        from bench_report import write_markdown
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "b.md")
-            path.write_text("# Head\n\nPrinted by long ago\n| old |\n")
-            for what in ("one", "two"):
-                write_markdown(path, [(what, "1 m", "<= 2", True)])
-            text = path.read_text()
-            self.assertTrue(text.startswith("# Head\n\nPrinted by `scripts/bench`"), text)
-            self.assertIn("| two | 1 m | <= 2 | ok |", text)
-            self.assertNotIn("old", text)
-            self.assertNotIn("one", text)
-
-    def test_falls_are_of_all_kinds_and_the_same_every_time(self):
-        from bench_falls import fall_clips
-        clips = fall_clips()
-        self.assertEqual(clips, fall_clips())
-        falls = [json.loads(value.split("=", 1)[1])[0] for clip in clips for value in clip
-                 if value.startswith("camera.falls=")]
-        self.assertEqual(len(falls), 20)
-        self.assertEqual({fall["to"] for fall in falls}, {"forward", "backward", "sideways"})
-        turns = [fall["turn_deg"] for fall in falls]
-        self.assertTrue(-90 <= min(turns) < -60 and 60 < max(turns) <= 90, turns)
-        self.assertTrue(all(0 <= fall["skip_m"] <= 0.8 for fall in falls))
-
-    def test_unknown_parts_are_refused(self):
-        done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],
-                              stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("no part is called wlak", done.stderr)
-
-
 class Repository(unittest.TestCase):
     def test_core_includes_no_ros(self):
         outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "src/viewer/",
@@ -197,6 +153,13 @@ class Repository(unittest.TestCase):
         done = subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], cwd=ROOT, text=True,
                               stderr=subprocess.PIPE)
         self.assertEqual(done.returncode, 0, "run clang-format -i:\n" + done.stderr[:2000])
+
+    def test_catkin_lint_has_nothing_to_say(self):
+        if not shutil.which("catkin_lint"):
+            self.skipTest("no catkin_lint")
+        done = subprocess.run(["catkin_lint", "--strict", "-q", str(ROOT)], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_every_source_names_its_licence(self):
         for path in code_files():

@@ -74,10 +74,10 @@ class MapSaver {
   /// As beginAnew(), where that has failed: what is partial is what stays of the old map.
   void abandon();
 
-  /// After a frame that was located at `pose`, where a folder was named: what is partial grows, the
-  /// map is saved now and then. `changed`: the map may have. Returns what went wrong or will (disk
+  /// After each frame, where a folder was named: what is partial grows, the map is saved now and
+  /// then. `may_change`: it is no map that is only used. Returns what went wrong or will (disk
   /// full), empty when all is well.
-  std::string note(const pf::StampedPose& pose, const MapToSave& map, bool changed);
+  std::string note(const pf::FrameStatus& status, const MapToSave& map, bool may_change);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -26,6 +26,10 @@ class ParentWatch {
   std::string conflict(const std::string& child, const std::string& parent,
                        const std::string& publisher, Time now) const;
 
+  /// The frame above `child` that nobody gives a parent, besides `publisher` this `parent`.
+  std::string rootAbove(const std::string& child, const std::string& parent,
+                        const std::string& publisher) const;
+
  private:
   struct Heard {
     Time when;
@@ -44,6 +48,9 @@ class ListeningParentWatch {
 
   /// See ParentWatch; for transforms that this process sends.
   std::string conflict(const std::string& child, const std::string& parent) const;
+
+  /// What the user may set where there is one.
+  std::string advice(const std::string& child, const std::string& map_frame) const;
 
  private:
   using Event = ros::MessageEvent<tf2_msgs::TFMessage const>;

@@ -6,16 +6,21 @@
 
 #include <functional>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "posefusion_ros/settings_messages.hpp"
 
 namespace posefusion_ros {
 
+/// A text among the values, for editors, which do not show why a call failed: what became of the
+/// last change.
+constexpr char kSettingsStatus[] = "settings_status";
+
 /// The topics and the service of dynamic_reconfigure, made from the list of fields that everything
 /// else reads settings by (config/fields.hpp), so that no .cfg file can differ from it. A value
-/// that is impossible is refused, not clamped: nothing changes, the call fails and the log says
-/// why.
+/// that is impossible is refused, not clamped: nothing changes, and the log, the failed call and
+/// kSettingsStatus say why.
 class SettingsTopics {
  public:
   /// Applies a request; throws InputError saying why it does not.
@@ -25,8 +30,8 @@ class SettingsTopics {
   SettingsTopics(const ros::NodeHandle& handle, VisitSettings visit, Change change);
 
  private:
-  bool onSet(dynamic_reconfigure::Reconfigure::Request& request,
-             dynamic_reconfigure::Reconfigure::Response& response);
+  dynamic_reconfigure::Config set(dynamic_reconfigure::Config request);
+  dynamic_reconfigure::Config tell(const std::string& status);
   void remember(const dynamic_reconfigure::Config& values);
 
   ros::NodeHandle handle_;

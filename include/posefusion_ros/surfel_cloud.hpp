@@ -4,6 +4,7 @@
 #include <sensor_msgs/PointCloud2.h>
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "posefusion/map/surfel_map.hpp"
 
@@ -20,6 +21,9 @@ struct SurfelPoint {
 
 /// The points (width of them) of a cloud that toCloud() made; null for any other.
 const SurfelPoint* surfelsOf(const sensor_msgs::PointCloud2& cloud);
+
+/// A cloud of these points, without a header.
+sensor_msgs::PointCloud2::Ptr toCloud(const std::vector<SurfelPoint>& points);
 
 /// The stable surfels as a cloud: x y z (m), rgb (packed as PCL does), normal_x normal_y normal_z,
 /// radius (m), confidence (frames), all 32-bit floats, moved by T_map_start into the map frame.

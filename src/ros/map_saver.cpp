@@ -154,19 +154,21 @@ void MapSaver::abandon() {
   folder_.reset();
 }
 
-std::string MapSaver::note(const pf::StampedPose& pose, const MapToSave& map, bool changed) {
-  if (!isOn() && continued_.empty()) return {};
+std::string MapSaver::note(const pf::FrameStatus& status, const MapToSave& map, bool may_change) {
+  // In a fragment frames are fused, and no pose is known.
+  const bool fused = status.outcome == pf::FrameOutcome::fused;
+  if ((!isOn() && continued_.empty()) || (!status.located && !fused)) return {};
   std::string trouble;
   try {
-    trouble = record(map, changed);
+    trouble = record(map, fused && may_change);
     if (!isOn()) return trouble;
-    if (!journal_) {
+    if (status.located && !journal_) {
       journal_ = std::make_unique<pf::TrajectoryJournal>(folder().file(kPartial), kPose);
     }
   } catch (const std::exception& error) {
     return error.what();
   }
-  if (!journal_->add({pose.stamp_ns, T_map_start_ * pose.T_world_camera}))
+  if (status.located && !journal_->add({status.stamp_ns, T_map_start_ * status.T_map_camera}))
     return folder().file(kPartial) + ": cannot be written (disk full?)";
   const auto period = std::chrono::duration<double>(settings_.period_s);
   if (settings_.period_s > 0 && Clock::now() - saved_ >= period) {

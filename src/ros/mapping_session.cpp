@@ -67,10 +67,7 @@ pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::strin
     trouble = error.what();
   }
   if (status.outcome != pf::FrameOutcome::bad_input) camera_ = input.frame.camera;
-  if (!status.located) return status;
-  const bool fused = status.outcome == pf::FrameOutcome::fused && use_ == MapUse::extend;
-  const std::string unwritten =
-      saver_.note({status.stamp_ns, status.T_map_camera}, toSave(), fused);
+  const std::string unwritten = saver_.note(status, toSave(), use_ == MapUse::extend);
   if (!unwritten.empty()) trouble = unwritten;
   return status;
 }

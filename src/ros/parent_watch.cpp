@@ -3,6 +3,8 @@
 
 #include <ros/this_node.h>
 
+#include <algorithm>
+
 #include "posefusion_ros/transforms.hpp"
 
 namespace posefusion_ros {
@@ -33,6 +35,24 @@ std::string ParentWatch::conflict(const std::string& child, const std::string& p
   return {};
 }
 
+std::string ParentWatch::rootAbove(const std::string& child, const std::string& parent,
+                                   const std::string& publisher) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string root = child;
+  // Senders that contradict each other may make a ring.
+  for (std::size_t steps = 0; steps < heard_.size(); ++steps) {
+    const auto senders = heard_.find(root);
+    if (senders == heard_.end()) break;
+    const auto other =
+        std::find_if(senders->second.begin(), senders->second.end(), [&](const auto& each) {
+          return each.first != Sender{parent, publisher};
+        });
+    if (other == senders->second.end()) break;
+    root = other->first.first;
+  }
+  return root;
+}
+
 ListeningParentWatch::ListeningParentWatch(ros::NodeHandle& handle)
     : moving_(handle.subscribe<tf2_msgs::TFMessage>(
           "/tf", kQueue,
@@ -53,6 +73,16 @@ std::string ListeningParentWatch::conflict(const std::string& child,
                                            const std::string& parent) const {
   return watch_.conflict(child, parent, ros::this_node::getName(),
                          std::chrono::steady_clock::now());
+}
+
+std::string ListeningParentWatch::advice(const std::string& child,
+                                         const std::string& map_frame) const {
+  const std::string root = watch_.rootAbove(child, map_frame, ros::this_node::getName());
+  if (root == map_frame) {
+    return "somebody else locates it in " + map_frame + ": give publish_tf:=false";
+  }
+  return "give base_frame:=" + root + " where that is the body that carries the camera, " +
+         "another frame_id of the images where it is a second chain's, or publish_tf:=false";
 }
 
 }  // namespace posefusion_ros

@@ -127,9 +127,8 @@ std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string&
   const std::string conflict = sends_ ? "" : parents_->conflict(child, settings_.map_frame);
   sends_ = conflict.empty();
   if (!sends_) {
-    return "no transform is sent: " + conflict +
-           "; give base_frame (the frame above it that has no parent), another camera frame, or "
-           "publish_tf:=false";
+    return "no transform is sent: " + conflict + "; " +
+           parents_->advice(child, settings_.map_frame);
   }
   geometry_msgs::TransformStamped message = tf2::eigenToTransform(T);
   message.header.stamp = stamp;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/surfel_cloud.hpp"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstring>
@@ -50,30 +51,34 @@ const SurfelPoint* surfelsOf(const sensor_msgs::PointCloud2& cloud) {
   return same ? reinterpret_cast<const SurfelPoint*>(cloud.data.data()) : nullptr;
 }
 
+sensor_msgs::PointCloud2::Ptr toCloud(const std::vector<SurfelPoint>& points) {
+  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
+  describe(*cloud);
+  cloud->width = static_cast<std::uint32_t>(points.size());
+  cloud->row_step = cloud->width * cloud->point_step;
+  cloud->data.resize(points.size() * sizeof(SurfelPoint));
+  if (!points.empty()) std::memcpy(cloud->data.data(), points.data(), cloud->data.size());
+  return cloud;
+}
+
 sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                                       const Eigen::Isometry3d& T_map_start,
                                       std::size_t max_points) {
   const std::size_t stable = map.stableCount();
-  const std::size_t step = max_points > 0 ? (stable + max_points - 1) / max_points : 1;
+  const std::size_t step =
+      max_points > 0 ? std::max<std::size_t>(1, (stable + max_points - 1) / max_points) : 1;
   const Eigen::Isometry3f T = T_map_start.cast<float>();
-  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
-  describe(*cloud);
-  if (stable == 0) return cloud;
-  cloud->data.resize((stable + step - 1) / step * sizeof(SurfelPoint));
-  std::size_t seen = 0, count = 0;
+  std::vector<SurfelPoint> points;
+  points.reserve(stable / step + 1);
+  std::size_t seen = 0;
   map.forEachSurfel([&](const pf::SurfelArrays& s, std::size_t i) {
     if (!map.isStable(s, i) || seen++ % step != 0 || pf::fragmentAt(s.x[i]) != 0) return;
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
-    const SurfelPoint point{p.x(),          p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]),
-                            n.x(),          n.y(), n.z(), s.radius[i],
-                            s.confidence[i]};
-    std::memcpy(&cloud->data[count++ * sizeof(SurfelPoint)], &point, sizeof(SurfelPoint));
+    points.push_back({p.x(), p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]), n.x(), n.y(), n.z(),
+                      s.radius[i], s.confidence[i]});
   });
-  cloud->data.resize(count * sizeof(SurfelPoint));  // without those of other fragments
-  cloud->width = static_cast<std::uint32_t>(count);
-  cloud->row_step = cloud->width * cloud->point_step;
-  return cloud;
+  return toCloud(points);
 }
 
 }  // namespace posefusion_ros

@@ -30,7 +30,7 @@ void Mapper::State::countLostTime(const Location& location, std::int64_t before_
 bool Mapper::State::wantsFragment(const StaticFrame& input, const Location& location) const {
   const double after_s = config.loop.new_fragment_after_s;
   return config.loop.enabled && after_s > 0 && lost_s >= after_s && may_change && !input.forced &&
-         location.outcome != FrameOutcome::no_depth && location.outcome != FrameOutcome::unproven;
+         location.outcome != FrameOutcome::no_depth && !localiser.isProving();
 }
 
 /// The frame begins a piece of the map of its own, far from all others.

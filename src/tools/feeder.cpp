@@ -50,7 +50,7 @@ class Feeder {
     }
     if (settings_.frame_id.empty()) settings_.frame_id = frames::kOptical;
     if (settings.tf) transforms_ = std::make_unique<TransformReplay>(handle_, input);
-    clock_ = handle_.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
+    if (settings.clock) clock_ = handle_.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
     info_ = handle_.advertise<sensor_msgs::CameraInfo>(topics::kCameraInfo, kQueue);
     depth_ = handle_.advertise<sensor_msgs::Image>(topics::kDepth, kQueue);
     color_ = handle_.advertise<sensor_msgs::Image>(topics::kColor, kQueue);
@@ -152,7 +152,7 @@ class Feeder {
     if (transforms_) transforms_->advance(header.stamp);
     rosgraph_msgs::Clock clock;
     clock.clock = header.stamp;
-    clock_.publish(clock);
+    if (settings_.clock) clock_.publish(clock);
     latency_.sent(frame.stamp_ns, steady_clock::now());
     window_.sent(frame.stamp_ns);
     ++sent_;

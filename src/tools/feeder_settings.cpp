@@ -17,6 +17,7 @@ FeederSettings readFeederSettings() {
   s.timeout_s = parameters.number("timeout_s", s.timeout_s, {0.1, 1e6});
   s.max_frames = parameters.integer("max_frames", s.max_frames, {0, 1e9});
   s.tf = parameters.flag("tf", s.tf);
+  s.clock = parameters.flag("clock", s.clock);
   s.frame_id = parameters.text("frame_id", "");
   s.input.camera_file = parameters.text("camera_file", "");
   s.input.topics.color = parameters.text("color_topic", "");

@@ -16,6 +16,7 @@ struct FeederSettings {
   double timeout_s = 60.0;
   int max_frames = 0;
   bool tf = false;
+  bool clock = true;     ///< publish /clock
   std::string frame_id;  ///< of the images; empty: the bag's
   std::string
       manager;  ///< node of the chain: the replay fails where it is gone; empty: not looked for

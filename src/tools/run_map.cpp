@@ -50,7 +50,9 @@ RunMap::RunMap(const RunOptions& options, const Mapper& mapper) : mapper_(mapper
 }
 
 std::string RunMap::add(const ProcessedFrame& frame) {
-  if (!recording_ || !frame.status.located) return {};
+  // In a fragment frames are fused, and no pose is known.
+  const bool fused = frame.status.outcome == FrameOutcome::fused;
+  if (!recording_ || (!frame.status.located && !fused)) return {};
   return recording_->update(frame.seen.frame.camera, mapper_);
 }
 

@@ -20,9 +20,6 @@ namespace {
 
 constexpr float kHalfView_rad = 0.39F;  // of rviz's orbit view, upwards and downwards
 constexpr float kMargin = 1.05F;
-// Below so many frames a second, seen twice, every second disc is left out: software rendering.
-constexpr float kFluid_hz = 8, kLook_s = 2;
-constexpr std::size_t kFewestDiscs = 50000;
 constexpr std::size_t kSample = 50000;  // surfels that room and floor are told from
 
 /// Evenly many are left out; the others grow, so that no holes open.
@@ -79,7 +76,7 @@ void SurfelsDisplay::onInitialize() {
 void SurfelsDisplay::reset() {
   MFDClass::reset();
   cloud_.reset();
-  fluid_discs_ = SIZE_MAX;
+  fluid_ = {};
   if (discs_) discs_->set({});
   if (grid_) grid_->getSceneNode()->setVisible(false);
 }
@@ -105,28 +102,22 @@ void SurfelsDisplay::processMessage(const sensor_msgs::PointCloud2::ConstPtr& cl
 
 void SurfelsDisplay::update(float wall_dt, float ros_dt) {
   MFDClass::update(wall_dt, ros_dt);
-  ++frames_;
-  frames_s_ += wall_dt;
-  if (frames_s_ < kLook_s) return;
-  const bool is_slow = static_cast<float>(frames_) < kFluid_hz * frames_s_;
-  frames_ = 0;
-  frames_s_ = 0;
-  slow_looks_ = is_slow && cloud_ ? slow_looks_ + 1 : 0;
-  if (slow_looks_ < 2 || !keep_fluid_->getBool()) return;
-  slow_looks_ = 0;
-  const std::size_t shown = std::min(
-      {fluid_discs_, std::size_t{cloud_->width}, static_cast<std::size_t>(max_discs_->getInt())});
-  if (shown <= kFewestDiscs) return;
-  fluid_discs_ = std::max(kFewestDiscs, shown / 2);
-  show();
+  if (!cloud_ || !keep_fluid_->getBool()) return;
+  const std::size_t all =
+      std::min(std::size_t{cloud_->width}, static_cast<std::size_t>(max_discs_->getInt()));
+  if (fluid_.drawn(wall_dt, shown_, all)) show();
 }
 
 void SurfelsDisplay::show() {
   if (!cloud_ || !discs_) return;
   discs_->hideBacks(hide_backs_->getBool());
   const auto most = static_cast<std::size_t>(max_discs_->getInt());
-  discs_->set(thinned(*cloud_, keep_fluid_->getBool() ? std::min(most, fluid_discs_) : most));
-  setStatus(rviz::StatusProperty::Ok, "Message", QString::number(cloud_->width) + " surfels");
+  const auto shown =
+      thinned(*cloud_, keep_fluid_->getBool() ? std::min(most, fluid_.discs()) : most);
+  discs_->set(shown);
+  shown_ = shown.size();
+  setStatus(rviz::StatusProperty::Ok, "Message",
+            QString("%1 of %2 surfels shown").arg(shown.size()).arg(cloud_->width));
   const auto sample = thinned(*cloud_, kSample);
   const Eigen::AlignedBox3f box = boundsOf(sample);
   grid_->getSceneNode()->setVisible(false);
@@ -139,16 +130,17 @@ void SurfelsDisplay::show() {
 }
 
 /// Lines at whole metres of the map, under the whole room.
-void SurfelsDisplay::placeGrid(const Eigen::AlignedBox3f& box, const FloorPlane& floor) {
+void SurfelsDisplay::placeGrid(const Eigen::AlignedBox3f& box, const pf::Levels& floor) {
   const Eigen::Vector3f middle = box.center().array().round();
   const Eigen::Vector3f half = (box.max() - middle).cwiseMax(middle - box.min());
   const auto cells = static_cast<std::uint32_t>(2 * std::ceil(std::max(half.x(), half.y())));
   grid_->setCellCount(std::max(2U, cells));
+  const Eigen::Vector3f up = floor.up.cast<float>();
   const Eigen::Vector3f on_floor =
-      middle + floor.normal * (floor.height - floor.normal.dot(middle));
+      middle + up * (static_cast<float>(floor.lowest_m) - up.dot(middle));
   grid_->getSceneNode()->setPosition(toOgre(on_floor));
   // rviz draws it in the plane of x and z.
-  grid_->getSceneNode()->setOrientation(Ogre::Vector3::UNIT_Y.getRotationTo(toOgre(floor.normal)));
+  grid_->getSceneNode()->setOrientation(Ogre::Vector3::UNIT_Y.getRotationTo(toOgre(up)));
   grid_->getSceneNode()->setVisible(true);
 }
 

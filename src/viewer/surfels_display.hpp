@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "fluid_limit.hpp"
 #include "room_fit.hpp"
 #include "surfel_discs.hpp"
 
@@ -35,7 +36,7 @@ class SurfelsDisplay : public rviz::MessageFilterDisplay<sensor_msgs::PointCloud
 
  private:
   void show();
-  void placeGrid(const Eigen::AlignedBox3f& box, const FloorPlane& floor);
+  void placeGrid(const Eigen::AlignedBox3f& box, const pf::Levels& floor);
   void fitView(const Eigen::AlignedBox3f& box);
 
   rviz::BoolProperty* hide_backs_;
@@ -46,11 +47,8 @@ class SurfelsDisplay : public rviz::MessageFilterDisplay<sensor_msgs::PointCloud
   std::unique_ptr<SurfelDiscs> discs_;
   std::unique_ptr<rviz::Grid> grid_;
   sensor_msgs::PointCloud2::ConstPtr cloud_;
-  /// Frames drawn since the last look at the speed, and the seconds they took.
-  int frames_ = 0;
-  float frames_s_ = 0;
-  int slow_looks_ = 0;
-  std::size_t fluid_discs_ = SIZE_MAX;  ///< as many as can be drawn fluidly, as far as is known
+  FluidLimit fluid_;
+  std::size_t shown_ = 0;  ///< discs
   /// Of the view, as it was fitted last: another one is the user's.
   struct Fitted {
     float distance = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two chains beside each other.
+// Two chains beside each other, and a chain beside a driver.
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 
@@ -77,6 +77,32 @@ TEST(ChainPairs, OfOneCameraFrameOnlyTheFirstSendsTransforms) {
   EXPECT_EQ(first.process(frame(1)).reason, "");
   subscriber.shutdown();
   EXPECT_EQ(parents, std::set<std::string>{"first_map"});
+}
+
+TEST(ChainPairs, BesideADriverWithFramesOfItsOwnTheUserIsToldWhatToSet) {
+  ros::NodeHandle handle;
+  auto driver = handle.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
+  tf2_msgs::TFMessage mount;
+  mount.transforms.resize(1);
+  mount.transforms[0].header.frame_id = "driver_link";
+  mount.transforms[0].child_frame_id = "driver_eye";
+  mount.transforms[0].transform.rotation.w = 1;
+  driver.publish(mount);
+  const auto frame = [](int i) {
+    return seenBy("driver_eye", toMessages(emptyRoom().frame(i).frame));
+  };
+  for (const bool as_told : {false, true}) {
+    Chain chain(as_told ? "with_base" : "without_base");
+    if (as_told) chain.set("base_frame", std::string("driver_link"));
+    ASSERT_TRUE(chain.load());
+    ros::WallDuration(0.3).sleep();  // until it has heard the driver
+    const std::string reason = chain.process(frame(0)).reason;
+    if (as_told) {
+      EXPECT_EQ(reason, "");
+    } else {
+      EXPECT_NE(reason.find("give base_frame:=driver_link"), std::string::npos) << reason;
+    }
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <posefusion/GetMap.h>
 
 #include "chain_fixture.hpp"
+#include "posefusion_ros/settings_server.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -38,6 +39,17 @@ class ChainServices : public testing::Test {
     return -1;
   }
 
+  /// What became of the last change, for editors.
+  std::string statusOf(const std::string& nodelet) {
+    const auto config = ros::topic::waitForMessage<Config>(
+        chain.space() + "/" + nodelet + "/parameter_updates", ros::Duration(10));
+    if (!config) return "no values were told";
+    for (const auto& each : config->strs) {
+      if (each.name == kSettingsStatus) return each.value;
+    }
+    return "no status among the values";
+  }
+
   posefusion::GetMapResponse map(std::uint32_t max_points) {
     posefusion::GetMap call;
     call.request.max_points = max_points;
@@ -54,6 +66,7 @@ TEST_F(ChainServices, SettingsChangeBetweenFramesAndAreToldToAll) {
   EXPECT_EQ(outcome(process(0)), TrackingStatusMsg::FUSED);
   ASSERT_TRUE(set("blur_gate", "blur/threshold", 1e6));
   EXPECT_EQ(inForce("blur_gate", "blur/threshold"), 1e6);
+  EXPECT_EQ(statusOf("blur_gate"), "changed");
   EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::BLURRED);
   ASSERT_TRUE(set("blur_gate", "blur/threshold", 0));
   EXPECT_EQ(outcome(process(2)), TrackingStatusMsg::FUSED);
@@ -67,11 +80,29 @@ TEST_F(ChainServices, SettingsChangeBetweenFramesAndAreToldToAll) {
 TEST_F(ChainServices, ARefusedValueChangesNothing) {
   ASSERT_TRUE(chain.load());
   const double before = inForce("segmenter", "segmentation/sigma_m");
+  EXPECT_EQ(statusOf("segmenter"), "");
   EXPECT_FALSE(set("segmenter", "segmentation/sigma_m", 1e9));
+  EXPECT_EQ(
+      statusOf("segmenter").rfind("nothing is changed: segmentation/sigma_m is 1e+09, expected", 0),
+      0U)
+      << statusOf("segmenter");
   EXPECT_FALSE(set("pose_detector", "pose/nothing", 1));
+  EXPECT_EQ(statusOf("pose_detector"),
+            "nothing is changed: there is no setting pose/nothing that may change while this runs");
   EXPECT_EQ(inForce("segmenter", "segmentation/sigma_m"), before);
   EXPECT_FALSE(ros::param::has(chain.space() + "/segmenter/segmentation/sigma_m"));
   EXPECT_EQ(outcome(process(0)), TrackingStatusMsg::FUSED);
+}
+
+TEST_F(ChainServices, AnEditorMaySendTheStatusBack) {
+  ASSERT_TRUE(chain.load({"blur_gate"}));
+  Reconfigure call;
+  call.request.config.strs.resize(1);
+  call.request.config.strs[0].name = kSettingsStatus;
+  call.request.config.strs[0].value = "anything";
+  ASSERT_TRUE(ros::service::call(chain.space() + "/blur_gate/set_parameters", call));
+  EXPECT_EQ(statusOf("blur_gate"), "changed");
+  EXPECT_FALSE(ros::param::has(chain.space() + "/blur_gate/" + kSettingsStatus));
 }
 
 TEST_F(ChainServices, TheMapIsThereForWhoComesLate) {

@@ -108,6 +108,16 @@ class Commands(unittest.TestCase):
             self.assertIsNone(chain.poll(), self.said(chain))
             self.run_to_its_end(command)
         self.check_that_python_knows_all_types()
+        self.check_that_a_refusal_says_why()
+
+    def check_that_a_refusal_says_why(self):
+        value = "{config: {doubles: [{name: blur/threshold, value: -1}]}}"
+        done = subprocess.run(["rosservice", "call", "/posefusion/blur_gate/set_parameters", value], text=True,
+                              env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("blur/threshold is -1, expected 0 to", done.stdout)
+        values = self.run_to_its_end("rosrun dynamic_reconfigure dynparam get /posefusion/blur_gate")
+        self.assertIn("nothing is changed: blur/threshold is -1", values)
 
     def check_that_python_knows_all_types(self):
         """rostopic and rosservice need the classes of every topic and service that we have."""

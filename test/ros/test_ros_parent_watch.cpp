@@ -37,5 +37,22 @@ TEST(ParentWatch, WhoHasStoppedIsForgottenButAFixedTransformHolds) {
   EXPECT_NE(watch.conflict("camera", "map", "/me", kNow + seconds(3)), "");
 }
 
+TEST(ParentWatch, TheFrameToGiveIsTheTopOfTheOthersTree) {
+  ParentWatch watch;
+  EXPECT_EQ(watch.rootAbove("camera", "map", "/me"), "camera");
+  watch.hear("camera", "camera_rgb", "/driver", true, kNow);
+  watch.hear("camera_rgb", "camera_link", "/driver", true, kNow);
+  EXPECT_EQ(watch.rootAbove("camera", "map", "/me"), "camera_link");
+  watch.hear("camera_link", "map", "/me", false, kNow);
+  EXPECT_EQ(watch.rootAbove("camera", "map", "/me"), "camera_link") << "our own does not count";
+}
+
+TEST(ParentWatch, ARingOfParentsHasAnEnd) {
+  ParentWatch watch;
+  watch.hear("a", "b", "/you", true, kNow);
+  watch.hear("b", "a", "/you", true, kNow);
+  watch.rootAbove("a", "map", "/me");
+}
+
 }  // namespace
 }  // namespace posefusion_ros

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the rviz display tells of a room: its size and its floor.
+// What the rviz display tells of a room, its size and its floor, and how much of it is drawn.
 #include "../../src/viewer/room_fit.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+
+#include "../../src/viewer/fluid_limit.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -43,8 +46,8 @@ TEST(RoomFit, TheFloorIsTheLowestLargePlaneThatFacesUp) {
     ASSERT_TRUE(floor) << angle;
     const Vector3f expected =
         Eigen::AngleAxisf(angle, Vector3f(1, 1, 0).normalized()) * Vector3f::UnitZ();
-    EXPECT_GT(floor->normal.dot(expected), 0.9999F) << angle;
-    EXPECT_NEAR(floor->height, -1.2F, 0.02F) << angle;
+    EXPECT_GT(floor->up.cast<float>().dot(expected), 0.9999F) << angle;
+    EXPECT_NEAR(floor->lowest_m, -1.2, 0.02) << angle;
   }
 }
 
@@ -66,6 +69,49 @@ TEST(RoomFit, StraySurfelsDoNotMakeTheRoomLarger) {
   EXPECT_NEAR(box.min().z(), -1.2, 0.05);
   EXPECT_NEAR(box.max().z(), 1.3, 0.05);
   EXPECT_TRUE(boundsOf({}).isEmpty());
+}
+
+/// A machine that takes so long for a frame and for each disc of it.
+struct Machine {
+  double frame_s, disc_s;
+};
+
+/// Frames a second after `seconds` of drawing `all` discs, as many as the limit allows.
+double rateAfter(double seconds, std::size_t all, const Machine& machine, FluidLimit& limit) {
+  double frame_s = 0;
+  for (double t = 0; t < seconds; t += frame_s) {
+    const std::size_t limited = std::min(all, limit.discs());
+    const std::size_t shown = all / ((all + limited - 1) / limited);  // every so many-th
+    frame_s = std::max(1.0 / 30, machine.frame_s + machine.disc_s * static_cast<double>(shown));
+    limit.drawn(static_cast<float>(frame_s), shown, all);
+  }
+  return 1 / frame_s;
+}
+
+TEST(FluidLimit, ASlowMachineDrawsFewerDiscsAndStaysAtThat) {
+  for (const double disc_s : {4e-7, 2e-6}) {
+    FluidLimit limit;
+    const Machine machine{0.03, disc_s};
+    EXPECT_GT(rateAfter(12, 1000000, machine, limit), 8) << disc_s;
+    const std::size_t settled = limit.discs();
+    EXPECT_GE(settled, disc_s < 1e-6 ? 100000U : 30000U);
+    EXPECT_GT(rateAfter(60, 1000000, machine, limit), 8) << disc_s;
+    EXPECT_EQ(limit.discs(), settled) << "it does not go up and down";
+  }
+}
+
+TEST(FluidLimit, AFastMachineDrawsAll) {
+  FluidLimit limit;
+  EXPECT_GT(rateAfter(20, 1000000, {0.01, 1e-8}, limit), 25);
+  EXPECT_GE(limit.discs(), 1000000U);
+}
+
+TEST(FluidLimit, AMachineThatWasBusyDrawsAllAgain) {
+  FluidLimit limit;
+  rateAfter(20, 1000000, {0.05, 2e-6}, limit);
+  ASSERT_LT(limit.discs(), 100000U);
+  rateAfter(40, 1000000, {0.01, 1e-8}, limit);
+  EXPECT_GE(limit.discs(), 1000000U);
 }
 
 }  // namespace

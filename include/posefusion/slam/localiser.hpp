@@ -64,6 +64,8 @@ class Localiser {
                   bool forced, const ModelView& view, const MapRenderers& render);
 
   TrackingState state() const { return state_; }
+  /// While lost: the last frames looked right at some place, and fitted each other.
+  bool isProving() const { return proofs_ > 0; }
   /// Between the map and the last frame that was believed.
   const Brightness& brightness() const { return brightness_; }
   /// The last pose of a located frame.

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/bench: what it reads, keeps and writes. Nothing is measured."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+class Bench(unittest.TestCase):
+    def setUp(self):
+        sys.path.insert(0, str(ROOT / "scripts"))
+        self.addCleanup(sys.path.remove, str(ROOT / "scripts"))
+
+    def test_a_sequence_is_made_again_only_for_its_own_scenario_and_arguments(self):
+        from bench_runs import fingerprint
+        self.assertEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["a"]))
+        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["b"]))
+        self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("loop_room", ["a"]))
+
+    def test_the_table_keeps_the_text_before_it(self):
+        from bench_report import write_markdown
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "b.md")
+            path.write_text("# Head\n\nPrinted by long ago\n| old |\n")
+            for what in ("one", "two"):
+                write_markdown(path, [(what, "1 m", "<= 2", True)])
+            text = path.read_text()
+            self.assertTrue(text.startswith("# Head\n\nPrinted by `scripts/bench`"), text)
+            self.assertIn("| two | 1 m | <= 2 | ok |", text)
+            self.assertNotIn("old", text)
+            self.assertNotIn("one", text)
+
+    def test_what_becomes_of_live_frames_is_read_from_the_feeder(self):
+        from bench_live import understand
+        said = ("[INFO]: 900 frames sent, 664 fused, 236 dropped: fusion fell behind; from frame to TF 80.1 ms median, "
+                "99.0 ms 99 %")
+        self.assertEqual(understand(said), (
+            {"sent": 900, "fused": 664, "dropped: fusion fell behind": 236}, 80.1, 99.0))
+
+    def test_transforms_and_topics_that_cross_are_seen(self):
+        from bench_soak import crossed_topics, crossed_transforms
+        text = "".join(f'frame_id: "{parent}"\n    child_frame_id: "{child}"\n'
+                       for parent, child in (("left_map", "left_eye"), ("right_map", "right_eye")))
+        self.assertEqual(crossed_transforms(text, ("left", "right")), set())
+        self.assertEqual(crossed_transforms(text.replace("right_map", "left_map"), ("left", "right")),
+                         {"left_map -> right_eye", "right_map -> right_eye"})
+
+        class Session:
+            class master:
+                @staticmethod
+                def getSystemState(_):
+                    mask = ["/left/mask", ["/left/segmenter"]]
+                    return 1, "", [[mask], [["/left/mask", ["/right/fusion"]], ["/tf", ["/right/fusion"]]], []]
+
+        self.assertEqual(crossed_topics(Session, ("left", "right")), {"/left/mask"})
+
+    def test_falls_are_of_all_kinds_and_the_same_every_time(self):
+        from bench_falls import fall_clips
+        clips = fall_clips()
+        self.assertEqual(clips, fall_clips())
+        falls = [json.loads(value.split("=", 1)[1])[0] for clip in clips for value in clip
+                 if value.startswith("camera.falls=")]
+        self.assertEqual(len(falls), 20)
+        self.assertEqual({fall["to"] for fall in falls}, {"forward", "backward", "sideways"})
+        turns = [fall["turn_deg"] for fall in falls]
+        self.assertTrue(-90 <= min(turns) < -60 and 60 < max(turns) <= 90, turns)
+        self.assertTrue(all(0 <= fall["skip_m"] <= 0.8 for fall in falls))
+
+    def test_unknown_parts_are_refused(self):
+        done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],
+                              stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no part is called wlak", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
