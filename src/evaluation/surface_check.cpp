@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
-#include <utility>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/core/point_grid.hpp"
 
 namespace pf {
 namespace {
 
-constexpr float kCell_m = 0.05F;
+constexpr float kFirstSearch_m = 0.05F;
 constexpr std::size_t kGrain = 4096;
 // Surfels of one layer, and the truth that they belong to, lean against each other less than this.
 constexpr float kSameFacing = 0.8F;      // 37 degrees
@@ -22,55 +20,6 @@ constexpr float kTruthBeyond_m = 0.10F;  // true surface is looked for so far be
 
 using Points = std::vector<Eigen::Vector3f>;
 using Box = Eigen::AlignedBox3f;
-
-/// Points in cells of space; finds those in a box.
-class PointGrid {
- public:
-  explicit PointGrid(const Points& points) : points_(points), order_(points.size()) {
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      keyed[i] = {keyOf(cellOf(points[i])), static_cast<std::uint32_t>(i)};
-    }
-    std::sort(keyed.begin(), keyed.end());
-    for (std::size_t k = 0; k < keyed.size(); ++k) {
-      order_[k] = keyed[k].second;
-      auto& range = cells_.try_emplace(keyed[k].first, k, k).first->second;
-      range.second = k + 1;
-    }
-  }
-
-  /// Calls visit(i) for all points in the cells that the box touches.
-  template <typename Visit>
-  void visit(const Box& box, const Visit& visit) const {
-    const Eigen::Vector3i low = cellOf(box.min()), high = cellOf(box.max());
-    for (int x = low.x(); x <= high.x(); ++x) {
-      for (int y = low.y(); y <= high.y(); ++y) {
-        for (int z = low.z(); z <= high.z(); ++z) {
-          const auto cell = cells_.find(keyOf({x, y, z}));
-          if (cell == cells_.end()) continue;
-          for (std::size_t k = cell->second.first; k < cell->second.second; ++k) visit(order_[k]);
-        }
-      }
-    }
-  }
-
-  const Eigen::Vector3f& operator[](std::size_t i) const { return points_[i]; }
-
- private:
-  static Eigen::Vector3i cellOf(const Eigen::Vector3f& p) {
-    return (p / kCell_m).array().floor().cast<int>();
-  }
-  static std::uint64_t keyOf(const Eigen::Vector3i& cell) {
-    constexpr std::uint64_t kBits = 21, kMask = (1U << kBits) - 1;  // 100 km of cells
-    return (static_cast<std::uint64_t>(cell.x()) & kMask) << (2 * kBits) |
-           (static_cast<std::uint64_t>(cell.y()) & kMask) << kBits |
-           (static_cast<std::uint64_t>(cell.z()) & kMask);
-  }
-
-  const Points& points_;
-  std::vector<std::uint32_t> order_;
-  std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> cells_;
-};
 
 struct MovedSurfels {
   Points positions, normals;
@@ -131,7 +80,7 @@ float nearestTo(float at, const std::vector<float>& places) {
 
 /// Whether the truth has one surface for what lies at 0 and at `at`.
 bool isOneSurface(float at, const std::vector<float>& truth) {
-  return truth.empty() || std::abs(nearestTo(0, truth) - nearestTo(at, truth)) < kLeastLayer_m;
+  return truth.empty() || std::abs(nearestTo(0, truth) - nearestTo(at, truth)) < kLeastDoubled_m;
 }
 
 }  // namespace
@@ -146,7 +95,8 @@ std::vector<float> distancesToSurface(const SurfelArrays& surfels,
     for (std::size_t i = begin; i < end; ++i) {
       float& least = distances[i];
       // The farther it is, the wider the search.
-      for (float reach = kCell_m; least > reach && reach < 2 * kFarFromSurface_m; reach *= 2) {
+      for (float reach = kFirstSearch_m; least > reach && reach < 2 * kFarFromSurface_m;
+           reach *= 2) {
         grid.visit(boxAround(map.positions[i], reach + truth.radius_m), [&](std::size_t k) {
           least = std::min(
               least, distanceToDisc(map.positions[i], grid[k], truth.normals[k], truth.radius_m));
@@ -169,19 +119,20 @@ std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,
       const Line line{map.positions[i], map.normals[i]};
       float at = 0;
       layers.clear();
-      surfel_grid.visit(line.box(kMostLayer_m, map.largest_radius), [&](std::size_t k) {
+      surfel_grid.visit(line.box(kMostDoubled_m, map.largest_radius), [&](std::size_t k) {
         const float radius = surfels.radius[k];
         if (!line.meets(map.positions[k], map.normals[k], radius, kSameFacing, at)) return;
         const float apart = std::abs(at);
-        if (apart >= kLeastLayer_m && apart <= kMostLayer_m) layers.push_back(at);
+        if (apart >= kLeastDoubled_m && apart <= kMostDoubled_m) layers.push_back(at);
       });
       if (layers.empty()) continue;
       truths.clear();
-      truth_grid.visit(line.box(kMostLayer_m + kTruthBeyond_m, truth.radius_m), [&](std::size_t k) {
-        const bool met =
-            line.meets(truth.positions[k], truth.normals[k], truth.radius_m, kFacingOfTruth, at);
-        if (met) truths.push_back(at);
-      });
+      truth_grid.visit(line.box(kMostDoubled_m + kTruthBeyond_m, truth.radius_m),
+                       [&](std::size_t k) {
+                         const bool met = line.meets(truth.positions[k], truth.normals[k],
+                                                     truth.radius_m, kFacingOfTruth, at);
+                         if (met) truths.push_back(at);
+                       });
       doubled[i] = std::any_of(layers.begin(), layers.end(),
                                [&](float layer) { return isOneSurface(layer, truths); });
     }

@@ -25,7 +25,7 @@ std::vector<float> distancesToSurface(const SurfelArrays& surfels,
                                       const SurfaceSamples& truth);
 
 /// Two layers of one surface are so far apart (m).
-constexpr float kLeastLayer_m = 0.02F, kMostLayer_m = 0.15F;
+constexpr float kLeastDoubled_m = 0.02F, kMostDoubled_m = 0.15F;
 
 /// Which surfels (1, else 0) lie in one of two layers where the truth has one surface: the line
 /// along the normal meets the disc of another surfel that faces the same way, 2 to 15 cm before or
