@@ -99,18 +99,19 @@ class Maps(Runs):
         note(f"killing {KILLS} runs")
         ends = [self.kill_one(sequence, chance.randint(1, frames - 10), chance.uniform(0, 0.2))
                 for _ in range(KILLS)]
-        lost = sorted(lost_s for _, lost_s in ends)
-        early = sum(1 for state, _ in ends if state == "empty")
-        whole = early + sum(1 for state, _ in ends if state == "whole")
+        lost, recorded = (sorted(times) for times in list(zip(*ends))[1:])
+        early = sum(1 for state, _, _ in ends if state == "empty")
+        whole = early + sum(1 for state, _, _ in ends if state == "whole")
         self.row(f"killed while mapping: files that load ({early}: before the first write, and say so)", whole,
                  f"of {KILLS}", KILLS, most=False, digits=0)
         self.row("killed while mapping: work told and lost, median", lost[KILLS // 2], "s", digits=2)
         self.row("killed while mapping: work told and lost, worst", lost[-1], "s", 1, digits=2)
+        self.row("killed while mapping: of the recording, worst", recorded[-1], "s", digits=2)
 
     def kill_one(self, sequence, poses_before, wait_s):
         """What the map file is of a run killed so long after so many poses (whole, empty, broken), and
-        the time (s) of its work that is lost: from when it told the last pose that is in the file to
-        when it told the last of all."""
+        how much is lost (s): from when it told the last pose that is in the file to when it told the
+        last of all; and the same by the stamps of the two."""
         folder = self.output / "killed"
         shutil.rmtree(folder, ignore_errors=True)
         run = subprocess.Popen([str(PROGRAMS / "posefusion_run"), str(sequence), "--output", str(folder),
@@ -134,9 +135,10 @@ class Maps(Runs):
             info = call(PROGRAMS / "posefusion_map", "info", folder / PARTIAL_MAP)
         except Failed as error:
             print(f"  {error}")
-            return "empty" if NO_MAP_YET in str(error) else "broken", end - min(told.values())
+            return ("empty" if NO_MAP_YET in str(error) else "broken", end - min(told.values()),
+                    float(told_last) - float(min(told)))
         last = next(line.split()[-1] for line in info.splitlines() if line.startswith("time "))
-        return "whole", max(0.0, end - told[last])
+        return "whole", max(0.0, end - told[last]), max(0.0, float(told_last) - float(last))
 
     def visitors(self):
         """A map made with people in view is found again without them, and the reverse."""
