@@ -66,7 +66,7 @@ class Falls(Runs):
         falls = []
         for i, changes in enumerate(fall_clips()):
             name = f"loop_room_{ROOM_SEED}_fall_{i:02d}"
-            clip = self.simulated("loop_room", ROOM_SEED, SECONDS, changes, name)
+            clip = self.simulated("loop_room", ROOM_SEED, SECONDS, *changes, name=name)
             status = self.output / f"{name}_run" / "status.csv"
             self.run(f"{name}_run", clip, "--detector", "recorded", "--map", map_file,
                      "--localize-only", "--save-status", status)

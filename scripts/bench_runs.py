@@ -33,6 +33,11 @@ def fingerprint(scenario, arguments):
     return digest.hexdigest()
 
 
+def plain(argument):
+    """What of an argument may be part of a folder's name."""
+    return "".join(c for c in argument if c.isalnum() or c == "_")
+
+
 class Runs(Report):
     def __init__(self, options):
         super().__init__()
@@ -61,19 +66,19 @@ class Runs(Report):
     def evaluate(self, *arguments):
         return json.loads(call(PROGRAMS / "posefusion_evaluate", *arguments, "--json"))
 
-    def simulated(self, scenario, seed, duration=None, changes=(), name=""):
+    def simulated(self, scenario, seed, duration=None, *more, name=""):
         """A simulated sequence: that of --sequences where it is there, or made, and kept until
-        what it is made from changes. `duration` in seconds; None: the scenario's own. `changes`:
-        further arguments of the simulator; they need a `name`."""
-        name = name or f"{scenario}_{seed}"
+        what it is made from changes. `duration` in seconds; None: the scenario's own. `more`:
+        further arguments of the simulator, which are part of the name where none is given."""
+        name = name or "_".join([scenario, str(seed), *(a for a in map(plain, more) if a)])
         given = self.options.sequences and self.options.sequences / name
         if given and given.is_dir():
             return given
         duration = self.options.duration or duration
-        arguments = [scenario, "--seed", str(seed), *changes]
+        arguments = [scenario, "--seed", str(seed), *more]
         if duration:
             arguments += ["--duration", str(duration)]
-        folder = self.output / "_".join([name] + ([f"{duration:g}s"] if duration else []))
+        folder = self.output / (name + (f"_{duration:g}s" if duration else ""))
         marker, wanted = folder / "made_from", fingerprint(scenario, arguments)
         if marker.exists() and marker.read_text() == wanted:
             return folder

@@ -5,6 +5,7 @@ import json
 
 from bench_falls import Falls
 from bench_report import call
+from bench_maps import Maps
 from bench_runs import PROGRAMS, note
 
 WALKING_BARS_M = {"walking_static": 0.005, "walking_xyz": 0.010, "walking_halfsphere": 0.016,
@@ -18,7 +19,7 @@ def states(folder):
         return list(csv.DictReader(file))
 
 
-class Walks(Falls):
+class Walks(Falls, Maps):
     def check_track(self, name, sequence, folder):
         """Coverage, wrong and false poses of a run, by posefusion_evaluate; draws the plan."""
         plan = folder / "plan.png"
@@ -58,8 +59,11 @@ class Walks(Falls):
         track = self.check_track(name, sequence, folder)
         self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.05, digits=3)
         self.row(f"{name}, error of the last pose", track["last_m"], "m", 0.04, digits=3)
-        for count in ("keyframes", "ferns", "accepted", "corrections"):
+        self.surface(name, sequence, folder)
+        self.closer_times(name, summary)
+        for count in ("keyframes", "corrections"):
             self.row(f"{name}, loops: {count}", summary["loops"][count], "", digits=0)
+        self.loop_counts(name, summary["loops"])
 
     def fall_without_loops(self, seed, people):
         name = f"fall_short {seed}, {people}, no loop closing"

@@ -70,6 +70,17 @@ class Bench(unittest.TestCase):
         self.assertTrue(-90 <= min(turns) < -60 and 60 < max(turns) <= 90, turns)
         self.assertTrue(all(0 <= fall["skip_m"] <= 0.8 for fall in falls))
 
+    def test_places_are_compared_by_distance_and_angle(self):
+        from bench_maps import is_far, poses
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "t.txt")
+            path.write_text("# head\n1.0 0 0 0 0 0 0 1\n2.0 0 0 0.09 0 0 0 -1\n3.0 0 0 0.11 0 0 0 1\n"
+                            "4.0 0 0 0 0 0 0.0523 0.99863\n5.0 0 0")
+            known = poses(path)
+        self.assertEqual(list(known), ["1.0", "2.0", "3.0", "4.0"], "the last line is half written")
+        self.assertEqual([is_far(known["1.0"], pose) for pose in known.values()],
+                         [False, False, True, True], "0, 9, 11 cm, 6 degrees")
+
     def test_unknown_parts_are_refused(self):
         done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],
                               stderr=subprocess.PIPE, text=True)

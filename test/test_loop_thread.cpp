@@ -99,6 +99,8 @@ TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
   loops.serve(mapper);  // asks for the first keyframe
   loops.finish(mapper);
   EXPECT_EQ(loops.counts().keyframes, 1U);
+  ASSERT_EQ(loops.verificationMs().size(), 1U);
+  EXPECT_GT(loops.verificationMs()[0], 0.0);
   mapper.reset();
   loops.reset();
   mapper.process({room().frame(1).frame, {}, {}});

@@ -68,6 +68,31 @@ TEST(RunStatistics, MedianAndTailOfAStage) {
   EXPECT_EQ(stages.count("pose"), 0U) << "the detector looked at no frame";
 }
 
+TEST(RunStatistics, MinutesOfTheRecordingHaveTheirMedians) {
+  RunStatistics statistics;
+  for (int i = 0; i < 600; ++i) {  // a tenth of a second apart; nothing in the second minute
+    ProcessedFrame frame = frameAt(i, FrameOutcome::fused);
+    frame.status.tracking_ms = 10;
+    if (i >= 300) frame.status.stamp_ns += 120'000 * kMs;
+    frame.seen.gate_ms = i >= 300 ? 2 : 1;
+    frame.segmentation_ms = 4;
+    statistics.add(frame);
+  }
+  EXPECT_EQ(statistics.minutes(), (std::vector<double>{16, 0, 17}));
+}
+
+TEST(RunStatistics, LoopsTakeTimeInTheChainAndBesideIt) {
+  RunStatistics statistics;
+  ProcessedFrame frame = frameAt(0, FrameOutcome::fused);
+  statistics.add(frame);
+  EXPECT_EQ(statistics.stages().count("loop_closing"), 0U) << "not known";
+  frame.loop_ms = 3;
+  statistics.add(frame);
+  statistics.addTime("loop_verification", 40);
+  EXPECT_EQ(statistics.stages().at("loop_closing").median_ms, 3);
+  EXPECT_EQ(statistics.stages().at("loop_verification").median_ms, 40);
+}
+
 TEST(RunStatistics, MasksAreAveragedOverTheSharpFrames) {
   RunStatistics statistics;
   ProcessedFrame masked = frameAt(0, FrameOutcome::fused);

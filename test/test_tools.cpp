@@ -125,6 +125,13 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   const auto check = nlohmann::json::parse(said);
   EXPECT_EQ(check.at("people_in_map").at("frames_with_masks"), kFrames);
   EXPECT_LT(check.at("depth").at("median_abs_difference_m").get<double>(), 0.02);
+
+  ASSERT_EQ(run({"surface", one, sequence(), "--json"}, "posefusion_evaluate"), 0) << said;
+  const auto surface = nlohmann::json::parse(said);
+  EXPECT_EQ(surface.at("surfels"), summary.at("surfels"));
+  EXPECT_LT(surface.at("median_m").get<double>(), 0.02);
+  EXPECT_LT(surface.at("two_layers").get<double>(), 0.1);
+  EXPECT_EQ(run({"surface", one, one}, "posefusion_evaluate"), 1) << "there is no truth";
 }
 
 TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {

@@ -11,7 +11,8 @@
 namespace pf {
 namespace {
 
-constexpr std::chrono::seconds kPeriod{1};
+// With the time that a write takes, less than a second is lost.
+constexpr std::chrono::milliseconds kPeriod{500};
 
 constexpr std::size_t kPixels = std::size_t{Thumbnail::kWidth} * Thumbnail::kHeight;
 constexpr std::size_t kThumbnailBytes = 1 + kPixels * (3 + sizeof(float));

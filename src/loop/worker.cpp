@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "posefusion/core/stopwatch.hpp"
+
 namespace pf {
 namespace {
 
@@ -25,8 +27,10 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   if (!question.corrected.empty()) closer_.setPoses(question.corrected);
   if (question.keyframe) {
     if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
+    Stopwatch watch;
     closer_.addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();
+    answer.verification_ms = watch.lapMs();
   }
   if (question.place) {
     answer.asked_for_place = true;

@@ -135,6 +135,7 @@ std::string RunReport::summary(std::size_t surfels) const {
   for (const auto& [name, time] : statistics_.stages()) {
     out["stages"][name] = {{"median_ms", time.median_ms}, {"p95_ms", time.p95_ms}};
   }
+  out["median_ms_by_minute"] = statistics_.minutes();
   out["configuration"] = configurationJson(config_);
   return out.dump(2) + "\n";
 }

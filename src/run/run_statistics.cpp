@@ -9,6 +9,8 @@
 namespace pf {
 namespace {
 
+constexpr std::int64_t kMinute_ns = 60'000'000'000;
+
 StageTime summarise(std::vector<double> times) {
   if (times.empty()) return {};
   std::sort(times.begin(), times.end());
@@ -71,6 +73,13 @@ void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("tracking", frame.status.tracking_ms);
   addTime("fusion", frame.status.fusion_ms);
   addTime("tracking_and_fusion", frame.status.tracking_ms + frame.status.fusion_ms);
+  addTime("loop_closing", frame.loop_ms);
+  if (!first_stamp_ns_) first_stamp_ns_ = frame.status.stamp_ns;
+  const double whole = frame.seen.gate_ms + frame.seen.pose_ms + frame.segmentation_ms +
+                       frame.status.tracking_ms + frame.status.fusion_ms;
+  if (!std::isnan(whole)) {
+    minutes_ms_[(frame.status.stamp_ns - *first_stamp_ns_) / kMinute_ns].push_back(whole);
+  }
 }
 
 void RunStatistics::addTime(const char* stage, double ms) {
@@ -87,6 +96,15 @@ std::map<std::string, StageTime> RunStatistics::stages() const {
   std::map<std::string, StageTime> stages;
   for (const auto& [name, times] : times_ms_) stages[name] = summarise(times);
   return stages;
+}
+
+std::vector<double> RunStatistics::minutes() const {
+  std::vector<double> medians;
+  for (const auto& [minute, times] : minutes_ms_) {
+    medians.resize(static_cast<std::size_t>(std::max<std::int64_t>(0, minute)) + 1);
+    medians.back() = summarise(times).median_ms;
+  }
+  return medians;
 }
 
 double peakMemoryMb() {

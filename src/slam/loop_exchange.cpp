@@ -48,6 +48,7 @@ void LoopExchange::takeOne(Mapper& mapper) {
   }
   if (answer) {
     counts_ = answer->counts;
+    if (answer->verification_ms > 0) verification_ms_.push_back(answer->verification_ms);
   } else {
     ++unanswered_;
   }

@@ -5,6 +5,7 @@
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/map/deform.hpp"
+#include "posefusion/map/layers.hpp"
 
 namespace pf {
 namespace {
@@ -87,6 +88,7 @@ void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
     if (deformation.isIdentity()) continue;
     const Eigen::Isometry3d T_new_old = deformation.at(map.frame());
     deform(map, deformation);
+    removeYoungerLayers(map);
     localiser.move(T_new_old);
     const bool is_fused = view.stamp_ns == last_stamp_ns;
     showFrom(T_new_old * view.T_map_camera, is_fused);

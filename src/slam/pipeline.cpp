@@ -53,7 +53,9 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   still.in_map_mask = out.segmentation.in_map_mask;
   still.input_depth = frame.depth;
   out.status = mapper_.process(still);
+  watch.lapMs();
   loop_thread_.serve(mapper_);
+  out.loop_ms = watch.lapMs();
   return out;
 }
 

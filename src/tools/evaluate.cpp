@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How good a trajectory, a run, masks, or reported covariances are.
+// How good a trajectory, a run, masks, reported covariances, or the surface of a map are.
 #include "evaluate.hpp"
 
 #include "tool.hpp"
@@ -7,7 +7,7 @@
 namespace pf {
 namespace {
 
-/// What two of the commands ask: something true, something to be checked.
+/// What three of the commands ask: something true, something to be checked.
 struct PairQuestion {
   std::string truth, checked;
   bool json = false;
@@ -63,6 +63,16 @@ CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
   return command;
 }
 
+/// The first of the two is the run, which is checked.
+CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
+  auto* command = app.add_subcommand(
+      "surface", "the map of a run against the true surface of a simulated room");
+  command->add_option("run", question.checked, "output folder of posefusion_run")->required();
+  command->add_option("sequence", question.truth, "sequence with scene_points.ply")->required();
+  command->add_flag("--json", question.json, "print JSON");
+  return command;
+}
+
 }  // namespace
 }  // namespace pf
 
@@ -73,11 +83,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   TrajectoryQuestion trajectory;
   RunQuestion run;
-  PairQuestion masks, covariance;
+  PairQuestion masks, covariance, surface;
   const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
   const CLI::App* run_command = addRunCommand(app, run);
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
+  const CLI::App* surface_command = addSurfaceCommand(app, surface);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
       evaluateRun(run);
@@ -85,6 +96,8 @@ int main(int argc, char** argv) {
       evaluateMasks(masks.truth, masks.checked, masks.json);
     } else if (*covariance_command) {
       evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
+    } else if (*surface_command) {
+      evaluateSurface(surface.checked, surface.truth, surface.json);
     } else if (*estimate) {
       evaluateTrajectory(trajectory);
     } else {

@@ -33,5 +33,7 @@ void evaluateRun(const RunQuestion& question);
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
 /// posefusion_evaluate covariance TRUTH STATUS_FILE
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json);
+/// posefusion_evaluate surface RUN_DIR SEQUENCE
+void evaluateSurface(const std::string& run, const std::string& sequence, bool json);
 
 }  // namespace pf

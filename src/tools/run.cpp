@@ -128,6 +128,7 @@ int run(const RunOptions& options) {
   RunMap map(options, pipeline.mapper());
   const auto failure = process(options, *source, pipeline, report, journal, map);
   report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
+  report.setVerification(pipeline.loopVerificationMs());
   report.write(options.output, pipeline.mapper().map());
   journal.remove();
   map.finish();

@@ -24,9 +24,9 @@ std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,
                          const std::string& whose);
 
-/// Keeps a map file up to date while a mapper works: about every second a copy of what has changed
-/// is written in a thread of its own, so that a killed process leaves a whole map. Its owner's
-/// thread alone may call it.
+/// Keeps a map file up to date while a mapper works: about twice a second a copy of what has
+/// changed is written in a thread of its own, so that a killed process leaves a whole map. Its
+/// owner's thread alone may call it.
 class MapRecording {
  public:
   /// `extend`: the mapper has loaded that file. Throws InputError naming the file.

@@ -36,6 +36,8 @@ struct LoopQuestion {
 /// What was found.
 struct LoopAnswer {
   std::vector<LoopConstraint> loops;  ///< of the keyframe
+  /// What it took to find and verify them all; 0 where there was no keyframe, or nobody measured.
+  double verification_ms = 0;
   bool asked_for_place = false;
   std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
   LoopCounts counts;                  ///< since the beginning

@@ -80,7 +80,8 @@ class SurfelMap {
   /// refused. Positions that are not finite are left out. Returns how many were added.
   std::size_t add(const SurfelArrays& surfels);
 
-  /// Removes the surfels for which doomed(surfels, i) holds, keeping the order of the others.
+  /// Removes the surfels for which doomed(surfels, i) holds, keeping the order of the others. It is
+  /// asked once for each, in the order of forEachSurfel().
   template <typename Doomed>
   std::size_t removeIf(const Doomed& doomed) {
     std::size_t removed = 0;

@@ -37,6 +37,11 @@ class RunReport {
 
   void setTruth(const Trajectory& truth) { truth_ = truth; }
 
+  /// Times (ms) of the loop closer's work beside the chain.
+  void setVerification(const std::vector<double>& times_ms) {
+    for (const double ms : times_ms) statistics_.addTime("loop_verification", ms);
+  }
+
   /// Reported as `depth_median_difference_m`.
   void setDepthCheck(const DepthCheck& check) { depth_difference_m_ = check.medianM(); }
 

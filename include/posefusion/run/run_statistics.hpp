@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,19 +52,27 @@ class RunStatistics {
   const FrameCounts& frames() const { return frames_; }
   MaskCounts masks() const;
 
-  /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion, and
-  /// tracking_and_fusion, their sum.
+  /// A time that belongs to no frame: work beside the chain.
+  void addTime(const char* stage, double ms);
+
+  /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion,
+  /// tracking_and_fusion, their sum, loop_closing (what of it keeps the frame waiting), and what
+  /// addTime() was told.
   std::map<std::string, StageTime> stages() const;
+
+  /// Median time (ms) that the chain took for a frame, in each minute of the recording.
+  std::vector<double> minutes() const;
 
  private:
   void addMask(const ProcessedFrame& frame);
   void addTimes(const ProcessedFrame& frame);
-  void addTime(const char* stage, double ms);
 
   FrameCounts frames_;
   MaskCounts masks_;
   double mask_part_sum_ = 0;
   std::map<std::string, std::vector<double>> times_ms_;
+  std::optional<std::int64_t> first_stamp_ns_;
+  std::map<std::int64_t, std::vector<double>> minutes_ms_;  // by their number
 };
 
 /// Largest memory the process has had, megabytes.

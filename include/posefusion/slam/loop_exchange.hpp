@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "posefusion/loop/worker.hpp"
 
@@ -59,6 +60,10 @@ class LoopExchange {
   /// As of the last answer.
   const LoopCounts& counts() const { return counts_; }
 
+  /// Time that each keyframe took beside the mapper, candidates and verification of all its loops;
+  /// where the answers tell.
+  const std::vector<double>& verificationMs() const { return verification_ms_; }
+
   /// Questions that were given up.
   std::size_t unanswered() const { return unanswered_; }
 
@@ -78,6 +83,7 @@ class LoopExchange {
   std::int64_t number_ = 0;  ///< of the frame
   std::size_t unanswered_ = 0;
   LoopCounts counts_;
+  std::vector<double> verification_ms_;
 };
 
 }  // namespace pf

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/frame/flow.hpp"
@@ -30,6 +32,8 @@ struct ProcessedFrame {
   Segmentation segmentation;
   double segmentation_ms = 0;
   FrameStatus status;
+  /// Handing questions to the loop closer and taking its answers in; NaN: not known.
+  double loop_ms = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The whole chain, free of ROS: the offline runner, the tests and the benchmarks. `see` and `map`
@@ -54,6 +58,9 @@ class Pipeline {
   void finish() { loop_thread_.finish(mapper_); }
 
   const LoopCounts& loopCounts() const { return loop_thread_.counts(); }
+
+  /// See LoopExchange::verificationMs().
+  const std::vector<double>& loopVerificationMs() const { return loop_thread_.verificationMs(); }
 
   const Mapper& mapper() const { return mapper_; }
 

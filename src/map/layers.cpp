@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/map/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "posefusion/core/parallel.hpp"
+#include "posefusion/core/point_grid.hpp"
+
+namespace pf {
+namespace {
+
+// What is closer is noise of one layer.
+constexpr float kLeastLayer_m = 0.015F;
+constexpr float kSameFacing = 0.8F;  // cosine
+constexpr std::size_t kGrain = 4096;
+
+/// The stable surfels of a map, and where each is among all.
+struct StableSurfels {
+  explicit StableSurfels(const SurfelMap& map) {
+    std::size_t index = 0;
+    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+      const std::size_t here = index++;
+      if (!map.isStable(s, i)) return;
+      indices.push_back(here);
+      positions.emplace_back(s.x[i], s.y[i], s.z[i]);
+      normals.emplace_back(s.nx[i], s.ny[i], s.nz[i]);
+      radii.push_back(s.radius[i]);
+      created.push_back(s.created[i]);
+      largest_radius = std::max(largest_radius, s.radius[i]);
+    });
+  }
+
+  /// Whether the line through surfel i along its normal meets the disc of k within the distances of
+  /// a layer.
+  bool areLayers(std::size_t i, std::size_t k) const {
+    const float cosine = normals[i].dot(normals[k]);
+    if (cosine < kSameFacing) return false;
+    const float at = normals[k].dot(positions[k] - positions[i]) / cosine;
+    const float apart = std::abs(at);
+    if (apart < kLeastLayer_m || apart > kMostLayer_m) return false;
+    const Eigen::Vector3f met = positions[i] + at * normals[i];
+    return (met - positions[k]).squaredNorm() <= radii[k] * radii[k];
+  }
+
+  /// All that areLayers() may hold for.
+  Eigen::AlignedBox3f boxAlongNormal(std::size_t i) const {
+    const Eigen::Vector3f reach =
+        kMostLayer_m * normals[i].cwiseAbs() + Eigen::Vector3f::Constant(largest_radius);
+    return {positions[i] - reach, positions[i] + reach};
+  }
+
+  std::vector<std::size_t> indices;
+  std::vector<Eigen::Vector3f> positions, normals;
+  std::vector<float> radii;
+  std::vector<std::int32_t> created;
+  float largest_radius = 0;
+};
+
+}  // namespace
+
+std::size_t removeYoungerLayers(SurfelMap& map) {
+  const StableSurfels stable(map);
+  const PointGrid grid(stable.positions);
+  std::vector<char> doomed(map.size(), 0);
+  parallelFor(stable.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      char& gone = doomed[stable.indices[i]];
+      grid.visit(stable.boxAlongNormal(i), [&](std::size_t k) {
+        if (stable.created[k] < stable.created[i] && gone == 0) gone = stable.areLayers(i, k);
+      });
+    }
+  });
+  std::size_t index = 0;  // surfels come in the order of forEachSurfel()
+  return map.removeIf([&](const SurfelArrays&, std::size_t) { return doomed[index++] != 0; });
+}
+
+}  // namespace pf

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/map/layers.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <set>
+
+namespace pf {
+namespace {
+
+constexpr int kSide = 40;
+
+/// Adds a wall z = `z` of kSide x kSide surfels a centimetre apart, made in one frame.
+void addWall(SurfelArrays& s, float z, int created, bool away = false, float confidence = 20) {
+  for (int k = 0; k < kSide * kSide; ++k) {
+    s.forEachArray([](auto& array) { array.push_back(0); });
+    s.x.back() = 0.01F * static_cast<float>(k % kSide);
+    s.y.back() = 0.01F * static_cast<float>(k / kSide);
+    s.z.back() = z;
+    s.nz.back() = away ? 1.0F : -1.0F;
+    s.radius.back() = 0.008F;
+    s.confidence.back() = confidence;
+    s.created.back() = created;
+  }
+}
+
+/// The frames in which the surfels were made that stay.
+std::multiset<int> left(const SurfelArrays& surfels) {
+  SurfelMap map{MapConfig{}};
+  map.restore(surfels, 1000);
+  const std::size_t removed = removeYoungerLayers(map);
+  EXPECT_EQ(removed, surfels.size() - map.size());
+  const SurfelArrays all = map.collect();
+  return {all.created.begin(), all.created.end()};
+}
+
+TEST(Layers, TheYoungerGoes) {
+  for (const float apart : {0.03F, -0.03F, 0.09F}) {
+    SurfelArrays surfels;
+    addWall(surfels, 2.0F + apart, 500);
+    addWall(surfels, 2.0F, 10);
+    const auto made = left(surfels);
+    EXPECT_EQ(made.size(), static_cast<std::size_t>(kSide * kSide)) << apart;
+    EXPECT_EQ(made.count(500), 0U) << apart;
+  }
+}
+
+TEST(Layers, WhatReachesBeyondTheOlderStays) {
+  SurfelArrays surfels;
+  addWall(surfels, 2.0F, 10);
+  SurfelArrays beside;
+  addWall(beside, 2.04F, 500);
+  for (float& x : beside.x) x += 0.2F;  // half of it lies behind the older
+  addWall(surfels, 2.04F, 500);
+  surfels.resize(kSide * kSide);
+  std::vector<std::uint32_t> all(beside.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  surfels.append(beside, all.data(), all.size());
+  EXPECT_EQ(left(surfels).count(500), static_cast<std::size_t>(kSide * kSide / 2));
+}
+
+TEST(Layers, NoiseOtherSurfacesAndUnstableSurfelsStay) {
+  const auto stays = [](float apart, bool away, float older_confidence) {
+    SurfelArrays surfels;
+    addWall(surfels, 2.0F, 10, false, older_confidence);
+    addWall(surfels, 2.0F + apart, 500, away);
+    return left(surfels).size() == surfels.size();
+  };
+  EXPECT_FALSE(stays(0.03F, false, 20));
+  EXPECT_TRUE(stays(0.01F, false, 20)) << "noise of one layer";
+  EXPECT_TRUE(stays(0.11F, false, 20)) << "a surface of its own";
+  EXPECT_TRUE(stays(0.03F, true, 20)) << "the other side of a board";
+  EXPECT_TRUE(stays(0.03F, false, 2)) << "the older was hardly seen";
+}
+
+TEST(Layers, OfOneFrameBothStay) {
+  SurfelArrays surfels;
+  addWall(surfels, 2.0F, 10);
+  addWall(surfels, 2.04F, 10);
+  EXPECT_EQ(left(surfels).size(), surfels.size()) << "one frame saw both";
+}
+
+TEST(Layers, ThreadsDoNotMatter) {
+  SurfelArrays surfels;
+  addWall(surfels, 2.0F, 10);
+  addWall(surfels, 2.03F, 400);
+  addWall(surfels, 2.11F, 700);  // a layer of the second, which goes
+  const auto many = left(surfels);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(left(surfels), many);
+}
+
+}  // namespace
+}  // namespace pf
