@@ -7,30 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "mapper_scene.hpp"
 #include "posefusion/map/surfel_map.hpp"
-#include "simulated_sequence.hpp"
 
 namespace pf {
 namespace {
-
-class MapperTest : public ::testing::Test {
- protected:
-  static Config config() {
-    Config c;
-    c.frame.shrink = 1;  // the images are small already
-    return c;
-  }
-  static double errorM(const FrameStatus& status, const TrueFrame& truth) {
-    return (status.T_map_camera.translation() - truth.T_map_camera.translation()).norm();
-  }
-  static RgbdFrame withDepth(const TrueFrame& from, const cv::Mat& depth) {
-    RgbdFrame frame = from.frame;
-    frame.depth = depth;
-    return frame;
-  }
-
-  static const SimulatedSequence& room() { return exactBox<60>(); }
-};
 
 TEST_F(MapperTest, FollowsAHandHeldCamera) {
   Mapper mapper(config());
@@ -126,72 +107,6 @@ TEST_F(MapperTest, WhileLostAHalfGoodFrameIsNotFused) {
     EXPECT_NE(status.outcome, FrameOutcome::fused) << k;
   }
   EXPECT_EQ(mapper.map().size(), surfels);
-}
-
-/// A camera in the mapped room that is lost and comes back.
-class MapperReturnTest : public MapperTest {
- protected:
-  void SetUp() override {
-    for (int i = 0; i < 20; ++i) see(room().frame(i).frame);
-  }
-  void see(RgbdFrame frame) {
-    frame.stamp_ns = stamp_ns_ += 33333333;
-    status_ = mapper_.process({frame, {}, {}});
-  }
-  /// Covers the camera until it is lost, not a frame longer.
-  void lose() {
-    const cv::Mat nothing = cv::Mat::zeros(240, 320, CV_16UC1);
-    for (int i = 0; i < 20 && !isLost(); ++i) see(withDepth(truth_, nothing));
-    ASSERT_TRUE(isLost());
-  }
-  /// The loop closer has seen that the camera is where it is.
-  void tellPlace() {
-    LoopAnswer answer;
-    answer.asked_for_place = true;
-    answer.place.emplace();
-    answer.place->doubt = PlaceDoubt::none;
-    answer.place->alignment.T_map_camera = truth_.T_map_camera;
-    mapper_.take(answer);
-  }
-  bool isLost() const { return status_.state == TrackingState::lost; }
-  void expectNeverBackWithAnotherPicture() {
-    RgbdFrame frame = truth_.frame;
-    frame.color = cv::Scalar::all(255) - frame.color;
-    for (int k = 0; k < 24; ++k) {
-      see(frame);
-      ASSERT_TRUE(isLost()) << k;
-    }
-  }
-
-  Mapper mapper_{config()};
-  FrameStatus status_;
-  std::int64_t stamp_ns_ = 0;
-  const TrueFrame truth_ = room().frame(20);
-};
-
-TEST_F(MapperReturnTest, NotWhereShapeFitsButThePictureIsAnother) {
-  lose();
-  expectNeverBackWithAnotherPicture();
-}
-
-TEST_F(MapperReturnTest, APlaceThatWasFoundSaysNothingOfTheNextLoss) {
-  lose();
-  see(truth_.frame);
-  tellPlace();
-  for (int k = 0; k < 3; ++k) see(truth_.frame);
-  ASSERT_FALSE(isLost());
-  lose();
-  expectNeverBackWithAnotherPicture();
-}
-
-TEST_F(MapperReturnTest, APlaceThatWasFoundComesBeforeWhatOnlyLooksRight) {
-  lose();
-  for (int k = 0; k < 4; ++k) see(truth_.frame);
-  ASSERT_EQ(status_.outcome, FrameOutcome::unproven) << "it looks right, and is being proven";
-  tellPlace();
-  for (int k = 0; k < 3; ++k) see(truth_.frame);
-  EXPECT_EQ(status_.state, TrackingState::tracking) << "three frames are enough where it was found";
-  EXPECT_LT(errorM(status_, truth_), 0.006);
 }
 
 TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {

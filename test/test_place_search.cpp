@@ -6,6 +6,7 @@
 
 #include "posefusion/core/se3.hpp"
 #include "posefusion/loop/verify.hpp"
+#include "posefusion/loop/worker.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "simulated_sequence.hpp"
 
@@ -147,6 +148,24 @@ TEST(PlaceSearch, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST(LoopWorker, FindsACameraThatWasLastSeenFallingOnItsBack) {
+  // One keyframe, without a picture: features cannot help.
+  KeyframeView view = keyframeView(room().frame(0), 0, room().sequence.pose(0), true);
+  view.intensity.setTo(128);
+  const Eigen::Isometry3d truth = room().sequence.pose(11);
+  Eigen::Isometry3d last = afterFall(truth, 0.3, 0.3);
+  last.linear() *= Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  last.translation() -= 0.9 * room().up;
+  LoopQuestion question;
+  question.known = {view};
+  question.place = std::make_shared<const PlaceQuestion>(
+      PlaceQuestion{room().frame(11), std::make_shared<const SurfelMap>(room().map), last});
+  LoopWorker worker{LoopConfig{}, TrackingConfig{}};
+  const LoopAnswer answer = worker.answer(question);
+  ASSERT_TRUE(answer.place);
+  EXPECT_LT(metresOff(answer.place->alignment.T_map_camera, truth), 0.03);
+}
+
 TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
   const Eigen::Isometry3d truth = room().sequence.pose(8);
   Vector6d off;
@@ -156,6 +175,18 @@ TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
   EXPECT_TRUE(verdict.accepted()) << name(verdict.doubt);
   EXPECT_LT(metresOff(verdict.alignment.T_map_camera, truth), 0.02);
   EXPECT_LT(radiansOff(verdict.alignment.T_map_camera, truth), 0.02);
+}
+
+TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
+  PlaceVerdict verdict;
+  verdict.alignment.converged = true;
+  verdict.agreement = {1.0, 1.0, 0.0, 0.0, 1.0, 0.2};
+  for (const double sigma_m : {0.03, 0.04}) {
+    verdict.alignment.covariance(1, 1) = sigma_m * sigma_m;
+    EXPECT_DOUBLE_EQ(positionSigma(verdict.alignment), sigma_m);
+    const PlaceDoubt doubt = judgePlace(verdict, verdict.alignment.T_map_camera, {});
+    EXPECT_EQ(doubt, sigma_m < 0.033 ? PlaceDoubt::none : PlaceDoubt::degenerate);
+  }
 }
 
 TEST(VerifyPlace, NoWrongPlaceIsAccepted) {

@@ -21,7 +21,7 @@ TEST(PointGrid, FindsAllPointsOfABox) {
     std::set<std::size_t> found;
     grid.visit(box, [&](std::size_t i) { EXPECT_TRUE(found.insert(i).second) << "twice"; });
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (box.contains(points[i])) EXPECT_EQ(found.count(i), 1U);
+      EXPECT_TRUE(!box.contains(points[i]) || found.count(i) == 1) << i;
     }
     EXPECT_LT(found.size(), points.size());
   }

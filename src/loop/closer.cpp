@@ -62,6 +62,12 @@ void LoopCloser::setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera) {
   }
 }
 
+std::vector<Eigen::Isometry3d> LoopCloser::poses() const {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Keyframe& keyframe : keyframes_) poses.push_back(keyframe.view.T_map_camera);
+  return poses;
+}
+
 std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
   const auto gap = static_cast<std::size_t>(config_.min_gap_keyframes);
   if (keyframes_.size() <= gap) return {};

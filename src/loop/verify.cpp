@@ -113,6 +113,12 @@ TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
   return start;
 }
 
+double positionSigma(const TrackingResult& alignment) {
+  const Eigen::Matrix3d covariance = alignment.covariance.topLeftCorner<3, 3>();
+  return std::sqrt(
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]));
+}
+
 PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
                       const VerifyLimits& limits) {
   const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
@@ -129,7 +135,9 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
       v.agreement.overlap >= limits.shape_overlap && v.agreement.spread >= limits.shape_spread;
   const double least = has_shape ? limits.min_correlation_of_shape : limits.min_correlation;
   if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
-  if (v.alignment.free_directions > 0) return PlaceDoubt::degenerate;
+  if (v.alignment.free_directions > 0 || positionSigma(v.alignment) > limits.max_sigma_m) {
+    return PlaceDoubt::degenerate;
+  }
   if (!isWithin(step, limits.max_shift_m, limits.max_turn_rad)) {
     return PlaceDoubt::moved_away;
   }

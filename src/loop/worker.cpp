@@ -2,16 +2,51 @@
 #include "posefusion/loop/worker.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "posefusion/core/stopwatch.hpp"
 
 namespace pf {
 namespace {
 
-// Where no floor was mapped, the camera's own idea of up before the loss has to do.
+// Where no floor was mapped, the camera's own idea of up has to do.
 constexpr double kUpright_rad = 0.7;
+// Lower or more tilted than this the last pose is not one that the camera stands in.
+constexpr double kStandingHeight_m = 0.2, kStandingTilt_rad = 0.2;
 // Candidates that are verified; the same place may come from several searches.
 constexpr std::size_t kVerified = 6, kVerifiedElsewhere = 12;
+
+/// Up in the map, by how the camera was held at its keyframes: the last pose may be of a fall.
+Eigen::Vector3d meanUpright(const std::vector<Eigen::Isometry3d>& keyframes,
+                            const Eigen::Isometry3d& T_map_last) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Isometry3d& T : keyframes) sum -= T.linear().col(1);
+  if (sum.norm() < 0.5 * static_cast<double>(keyframes.size())) sum.setZero();  // held anyhow
+  return sum.isZero() ? Eigen::Vector3d(-T_map_last.linear().col(1)) : sum.normalized();
+}
+
+/// Where the camera would stand at the place of its last pose, as it does at the nearest keyframe.
+/// Nothing where it stands already.
+std::optional<Eigen::Isometry3d> standing(const std::vector<Eigen::Isometry3d>& keyframes,
+                                          const Eigen::Isometry3d& T_map_last,
+                                          const Eigen::Vector3d& up) {
+  const auto far = [&](const Eigen::Isometry3d& T) {
+    return (T.translation() - T_map_last.translation()).squaredNorm();
+  };
+  const auto nearest =
+      std::min_element(keyframes.begin(), keyframes.end(),
+                       [&](const auto& a, const auto& b) { return far(a) < far(b); });
+  if (nearest == keyframes.end()) return std::nullopt;
+  const double higher_m = up.dot(nearest->translation() - T_map_last.translation());
+  const Eigen::Vector3d a = nearest->linear().transpose() * up;
+  const Eigen::Vector3d b = T_map_last.linear().transpose() * up;
+  if (std::abs(higher_m) < kStandingHeight_m && a.dot(b) > std::cos(kStandingTilt_rad)) {
+    return std::nullopt;
+  }
+  Eigen::Isometry3d T = *nearest;
+  T.translation() = T_map_last.translation() + higher_m * up;
+  return T;
+}
 
 }  // namespace
 
@@ -56,21 +91,23 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   if (map_.lock() != question.map) {
     map_ = question.map;
     points_ = thinnedPoints(*question.map);
-    const Eigen::Vector3d upright = question.T_map_last.linear() * -Eigen::Vector3d::UnitY();
+    const Eigen::Vector3d upright = meanUpright(closer_.poses(), question.T_map_last);
     const auto levels = findLevels(orientedPoints(points_), upright, kUpright_rad);
     up_ = levels ? levels->up : upright;
   }
   if (points_.size() == 0) return std::nullopt;
   const PlaceQuery query = placeQuery(question.frame);
   auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
-  for (const Eigen::Isometry3d& around : question.elsewhere) {
+  std::vector<Eigen::Isometry3d> elsewhere = question.elsewhere;
+  if (const auto T = standing(closer_.poses(), question.T_map_last, up_)) elsewhere.push_back(*T);
+  for (const Eigen::Isometry3d& around : elsewhere) {
     const auto more = searchPlaces(points_, query, around, up_, {});
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
   if (candidates.empty()) return std::nullopt;
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
-  const std::size_t most = question.elsewhere.empty() ? kVerified : kVerifiedElsewhere;
+  const std::size_t most = elsewhere.empty() ? kVerified : kVerifiedElsewhere;
   PlaceVerdict verdict = verifier_.verifyBest(*question.map, question.frame, candidates, most);
   if (!verdict.accepted()) return std::nullopt;
   return verdict;

@@ -20,6 +20,8 @@ constexpr int kManyCorners = 80;
 constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 constexpr int kProbationFrames = 60;
+// After a gap so long the camera may be where a fall threw it, and one frame is little to go by.
+constexpr double kMaxBlind_s = 0.25;
 
 Matrix6d diagonal(double sigma_m, double sigma_rad) {
   Vector6d variance;
@@ -64,6 +66,11 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   location.tracking = align(frame, prior, location.motion, render.model, verdict);
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
+  }
+  const double blind_s = kNanosecond * static_cast<double>(stamp_ns - trusted_ns_);
+  if (state_ == TrackingState::doubtful && verdict.outcome == FrameOutcome::fused &&
+      blind_s > kMaxBlind_s) {
+    verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;

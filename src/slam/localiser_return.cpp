@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a lost camera comes back.
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "posefusion/loop/verify.hpp"
@@ -29,6 +30,15 @@ PlaceDoubt doubtOf(const WorkingFrame& frame, const TrackingResult& tracking,
 
 }  // namespace
 
+Verdict Localiser::verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
+                                   double gap_s, const ViewRenderer& render) {
+  const PlaceDoubt doubt = doubtOf(frame, tracking, render);
+  if (doubt == PlaceDoubt::none) return {};
+  char text[96];
+  std::snprintf(text, sizeof text, "after %.1f s without a pose, the map from there: ", gap_s);
+  return {FrameOutcome::disagrees, text + std::string(name(doubt))};
+}
+
 void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
   reset();
   state_ = TrackingState::lost;
@@ -50,6 +60,10 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   const bool fits = follows || std::exchange(is_suggested_, false);
   proofs_ = looks_right ? (fits ? proofs_ + 1 : 1) : 0;
   is_place_verified_ = is_place_verified_ && looks_right && fits;
+  // A place that was verified may be left for a view that hardly tells where it is from.
+  const bool is_unsure =
+      is_place_verified_ && positionSigma(location.tracking) > VerifyLimits().max_sigma_m;
+  if (is_unsure) proofs_ = std::min(proofs_, kProofs - 1);
   if (proofs_ >= kProofs) {
     const PlaceDoubt doubt =
         is_place_verified_ ? PlaceDoubt::none : doubtOf(frame, location.tracking, render.view);

@@ -53,6 +53,9 @@ class LoopCloser {
   /// Verified constraints from older keyframes to the last one added; at most one for each.
   std::vector<LoopConstraint> findLoops();
 
+  /// Of the keyframes, in the map as last told.
+  std::vector<Eigen::Isometry3d> poses() const;
+
   const LoopCounts& counts() const { return counts_; }
   const FernDatabase& ferns() const { return ferns_; }
 

@@ -17,7 +17,7 @@ enum class PlaceDoubt {
   none,            ///< believed
   little_overlap,  ///< too little of the frame is in the map
   not_converged,   ///< the alignment did not settle
-  degenerate,      ///< the images leave directions free
+  degenerate,      ///< the images leave directions free, or hardly determine them
   moved_away,      ///< the alignment went far from the candidate
   disagrees,       ///< too few pixels are where the map has them
   seen_through,    ///< the frame sees through what the map shows
@@ -61,6 +61,7 @@ struct VerifyLimits {
   double min_correlation_of_shape = 0.3;
   double shape_overlap = 0.75, shape_spread = 0.05;
   double max_shift_m = 0.4, max_turn_rad = 0.35;
+  double max_sigma_m = 0.033;  ///< of the position: 3 of it are 0.1 m, beyond which a pose is wrong
 };
 
 /// Compares a frame with the map drawn from its pose.
@@ -68,6 +69,9 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view);
 
 /// Where an alignment starts that knows no more than a pose to begin with.
 TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera);
+
+/// Standard deviation (m) of the camera's position in the direction that is known worst.
+double positionSigma(const TrackingResult& alignment);
 
 /// What speaks against an alignment that began at `T_map_candidate`.
 PlaceDoubt judgePlace(const PlaceVerdict& verdict, const Eigen::Isometry3d& T_map_candidate,

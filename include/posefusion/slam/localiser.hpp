@@ -105,6 +105,9 @@ class Localiser {
                        Verdict& verdict) const;
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
+  /// What else is asked of a frame that tracking found good after a gap of `gap_s`.
+  static Verdict verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
+                                 double gap_s, const ViewRenderer& render);
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              const MapRenderers& render);
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,

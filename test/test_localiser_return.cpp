@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/localiser.hpp"
+
+#include "mapper_scene.hpp"
+
+namespace pf {
+namespace {
+
+/// A camera in the mapped room that is lost and comes back.
+class MapperReturnTest : public MapperTest {
+ protected:
+  void SetUp() override {
+    for (int i = 0; i < 20; ++i) see(room().frame(i).frame);
+  }
+  void see(RgbdFrame frame) {
+    frame.stamp_ns = stamp_ns_ += 33333333;
+    status_ = mapper_.process({frame, {}, {}});
+  }
+  /// Covers the camera until it is lost, not a frame longer.
+  void lose() {
+    const cv::Mat nothing = cv::Mat::zeros(240, 320, CV_16UC1);
+    for (int i = 0; i < 20 && !isLost(); ++i) see(withDepth(truth_, nothing));
+    ASSERT_TRUE(isLost());
+  }
+  /// Not for so long that it is lost.
+  void cover(int frames) {
+    const cv::Mat nothing = cv::Mat::zeros(240, 320, CV_16UC1);
+    for (int i = 0; i < frames; ++i) see(withDepth(truth_, nothing));
+    ASSERT_EQ(status_.state, TrackingState::doubtful);
+  }
+  /// Of the same shape.
+  RgbdFrame anotherPicture() const {
+    RgbdFrame frame = truth_.frame;
+    frame.color = cv::Mat(cv::Scalar::all(255) - truth_.frame.color);  // pixels of its own
+    return frame;
+  }
+  /// The loop closer has seen that the camera is where it is.
+  void tellPlace() {
+    LoopAnswer answer;
+    answer.asked_for_place = true;
+    answer.place.emplace();
+    answer.place->doubt = PlaceDoubt::none;
+    answer.place->alignment.T_map_camera = truth_.T_map_camera;
+    mapper_.take(answer);
+  }
+  bool isLost() const { return status_.state == TrackingState::lost; }
+  void expectNeverBackWithAnotherPicture() {
+    for (int k = 0; k < 24; ++k) {
+      see(anotherPicture());
+      ASSERT_TRUE(isLost()) << k;
+    }
+  }
+
+  Mapper mapper_{config()};
+  FrameStatus status_;
+  std::int64_t stamp_ns_ = 0;
+  const TrueFrame truth_ = room().frame(20);
+};
+
+TEST_F(MapperReturnTest, NotWhereShapeFitsButThePictureIsAnother) {
+  lose();
+  expectNeverBackWithAnotherPicture();
+}
+
+TEST_F(MapperReturnTest, AfterAGapItIsBackWhereAllFits) {
+  cover(7);
+  see(truth_.frame);
+  EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
+}
+
+TEST_F(MapperReturnTest, AfterAGapTheShapeIsNotEnough) {
+  cover(7);
+  see(anotherPicture());
+  EXPECT_EQ(status_.outcome, FrameOutcome::disagrees) << status_.detail;
+}
+
+TEST_F(MapperReturnTest, WithoutAGapTheShapeIsEnough) {
+  cover(2);
+  see(anotherPicture());
+  EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
+}
+
+TEST_F(MapperReturnTest, APlaceThatWasFoundSaysNothingOfTheNextLoss) {
+  lose();
+  see(truth_.frame);
+  tellPlace();
+  for (int k = 0; k < 3; ++k) see(truth_.frame);
+  ASSERT_FALSE(isLost());
+  lose();
+  expectNeverBackWithAnotherPicture();
+}
+
+TEST_F(MapperReturnTest, APlaceThatWasFoundComesBeforeWhatOnlyLooksRight) {
+  lose();
+  for (int k = 0; k < 4; ++k) see(truth_.frame);
+  ASSERT_EQ(status_.outcome, FrameOutcome::unproven) << "it looks right, and is being proven";
+  tellPlace();
+  for (int k = 0; k < 3; ++k) see(truth_.frame);
+  EXPECT_EQ(status_.state, TrackingState::tracking) << "three frames are enough where it was found";
+  EXPECT_LT(errorM(status_, truth_), 0.006);
+}
+
+}  // namespace
+}  // namespace pf
