@@ -172,7 +172,12 @@ class BagSource : public pf::FrameSource {
     reading(path_, [&] {
       rosbag::View view(bag_, rosbag::TopicQuery(topic));
       for (const auto& instance : view) {
-        if (const auto message = instance.template instantiate<Message>()) use(*message);
+        const auto message = instance.template instantiate<Message>();
+        if (!message) {
+          throw InputError("topic " + topic + " has messages " + instance.getDataType() +
+                           " of another version, expected the one of this posefusion");
+        }
+        use(*message);
       }
     });
   }

@@ -7,7 +7,61 @@
 #include "posefusion/io/files.hpp"
 
 namespace posefusion_ros {
+
+/// Recorded by a posefusion whose message was another.
+struct OldPeople {};
+
+}  // namespace posefusion_ros
+
+namespace ros {
+namespace message_traits {
+
+template <>
+struct MD5Sum<posefusion_ros::OldPeople> {
+  static const char* value() { return "0123456789abcdef0123456789abcdef"; }
+  static const char* value(const posefusion_ros::OldPeople&) { return value(); }
+};
+template <>
+struct DataType<posefusion_ros::OldPeople> {
+  static const char* value() { return "posefusion/People"; }
+  static const char* value(const posefusion_ros::OldPeople&) { return value(); }
+};
+template <>
+struct Definition<posefusion_ros::OldPeople> {
+  static const char* value() { return ""; }
+  static const char* value(const posefusion_ros::OldPeople&) { return value(); }
+};
+
+}  // namespace message_traits
+
+namespace serialization {
+
+template <>
+struct Serializer<posefusion_ros::OldPeople> {
+  template <typename Stream>
+  static void write(Stream&, const posefusion_ros::OldPeople&) {}
+  static std::uint32_t serializedLength(const posefusion_ros::OldPeople&) { return 0; }
+};
+
+}  // namespace serialization
+}  // namespace ros
+
+namespace posefusion_ros {
 namespace {
+
+TEST_F(BagSourceTest, PeopleOfAnotherVersionAreRefused) {
+  BagFile bag(path());
+  bag.info();
+  bag.color(33 * kMs);
+  bag.depth(33 * kMs);
+  bag.write("/people", OldPeople());
+  bag.close();
+  const auto source = openInput(path());
+  EXPECT_EQ(readAll(*source).size(), 1U) << "who does not ask for them can read the rest";
+  const std::string error = errorOf([&] { source->people(); });
+  EXPECT_TRUE(has(error, path())) << error;
+  EXPECT_TRUE(has(error, "/people has messages posefusion/People of another version")) << error;
+}
 
 TEST_F(BagSourceTest, DepthWithoutColorAndTheReverseAreCounted) {
   BagFile bag(path());
