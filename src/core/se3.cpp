@@ -94,6 +94,13 @@ bool isWithin(const Eigen::Isometry3d& T, double shift_m, double turn_rad) {
   return T.translation().norm() <= shift_m && angleOf(T) <= turn_rad;
 }
 
+Matrix6d independentCovariance(double sigma_m, double sigma_rad) {
+  Vector6d variance;
+  variance.head<3>().setConstant(sigma_m * sigma_m);
+  variance.tail<3>().setConstant(sigma_rad * sigma_rad);
+  return variance.asDiagonal();
+}
+
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d out = T;
   out.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();

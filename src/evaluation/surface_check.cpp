@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/normal_line.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/core/point_grid.hpp"
 
@@ -19,7 +20,6 @@ constexpr float kFacingOfTruth = 0.5F;   // 60 degrees: a surfel's normal is the
 constexpr float kTruthBeyond_m = 0.10F;  // true surface is looked for so far beyond the layers
 
 using Points = std::vector<Eigen::Vector3f>;
-using Box = Eigen::AlignedBox3f;
 
 struct MovedSurfels {
   Points positions, normals;
@@ -45,32 +45,9 @@ float distanceToDisc(const Eigen::Vector3f& point, const Eigen::Vector3f& center
   return std::hypot(above, beside);
 }
 
-Box boxAround(const Eigen::Vector3f& point, float reach) {
+Eigen::AlignedBox3f boxAround(const Eigen::Vector3f& point, float reach) {
   return {point - Eigen::Vector3f::Constant(reach), point + Eigen::Vector3f::Constant(reach)};
 }
-
-/// The line through a surfel along its normal.
-struct Line {
-  Eigen::Vector3f from, along;
-
-  Box box(float length, float margin) const {
-    Box box(from);
-    box.extend(from + length * along);
-    box.extend(from - length * along);
-    return {box.min() - Eigen::Vector3f::Constant(margin),
-            box.max() + Eigen::Vector3f::Constant(margin)};
-  }
-
-  /// Whether it meets the disc, which faces the way of the line as `facing` (a cosine) demands; and
-  /// how far along.
-  bool meets(const Eigen::Vector3f& center, const Eigen::Vector3f& normal, float radius,
-             float facing, float& at) const {
-    const float cosine = normal.dot(along);
-    if (cosine < facing) return false;
-    at = normal.dot(center - from) / cosine;
-    return (from + at * along - center).squaredNorm() <= radius * radius;
-  }
-};
 
 /// The one of these places along a line that is nearest.
 float nearestTo(float at, const std::vector<float>& places) {
@@ -116,7 +93,7 @@ std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,
   parallelFor(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<float> layers, truths;
     for (std::size_t i = begin; i < end; ++i) {
-      const Line line{map.positions[i], map.normals[i]};
+      const NormalLine line{map.positions[i], map.normals[i]};
       float at = 0;
       layers.clear();
       surfel_grid.visit(line.box(kMostDoubled_m, map.largest_radius), [&](std::size_t k) {

@@ -25,13 +25,6 @@ constexpr double kLeastVariance = 40.0;  // of grey levels: less texture tells n
 // Nothing is known before: a prior as wide as the gates.
 constexpr double kPriorShift_m = 0.3, kPriorTurn_rad = 0.3;
 
-Matrix6d widePrior() {
-  Vector6d variance;
-  variance.head<3>().setConstant(kPriorShift_m * kPriorShift_m);
-  variance.tail<3>().setConstant(kPriorTurn_rad * kPriorTurn_rad);
-  return variance.asDiagonal();
-}
-
 /// Sums over a window, for the correlation.
 struct GreySums {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
@@ -109,7 +102,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
 TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
   TrackingStart start;
   start.T_map_view = start.T_map_camera = start.prior.T_map_camera = T_map_camera;
-  start.prior.covariance = widePrior();
+  start.prior.covariance = independentCovariance(kPriorShift_m, kPriorTurn_rad);
   return start;
 }
 

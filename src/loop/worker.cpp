@@ -88,10 +88,11 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   }
   const PlaceVerdict soon = verifier_.verifyBest(*question.map, question.frame, like, kVerified);
   if (!like.empty() && soon.accepted()) return soon;
+  const std::vector<Eigen::Isometry3d> keyframes = closer_.poses();
   if (map_.lock() != question.map) {
     map_ = question.map;
     points_ = thinnedPoints(*question.map);
-    const Eigen::Vector3d upright = meanUpright(closer_.poses(), question.T_map_last);
+    const Eigen::Vector3d upright = meanUpright(keyframes, question.T_map_last);
     const auto levels = findLevels(orientedPoints(points_), upright, kUpright_rad);
     up_ = levels ? levels->up : upright;
   }
@@ -99,7 +100,7 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   const PlaceQuery query = placeQuery(question.frame);
   auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
   std::vector<Eigen::Isometry3d> elsewhere = question.elsewhere;
-  if (const auto T = standing(closer_.poses(), question.T_map_last, up_)) elsewhere.push_back(*T);
+  if (const auto T = standing(keyframes, question.T_map_last, up_)) elsewhere.push_back(*T);
   for (const Eigen::Isometry3d& around : elsewhere) {
     const auto more = searchPlaces(points_, query, around, up_, {});
     candidates.insert(candidates.end(), more.begin(), more.end());

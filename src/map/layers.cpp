@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "posefusion/core/normal_line.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/core/point_grid.hpp"
 
@@ -35,21 +36,12 @@ struct StableSurfels {
   /// Whether the line through surfel i along its normal meets the disc of k within the distances of
   /// a layer.
   bool areLayers(std::size_t i, std::size_t k) const {
-    const float cosine = normals[i].dot(normals[k]);
-    if (cosine < kSameFacing) return false;
-    const float at = normals[k].dot(positions[k] - positions[i]) / cosine;
-    const float apart = std::abs(at);
-    if (apart < kLeastLayer_m || apart > kMostLayer_m) return false;
-    const Eigen::Vector3f met = positions[i] + at * normals[i];
-    return (met - positions[k]).squaredNorm() <= radii[k] * radii[k];
+    float at = 0;
+    if (!lineOf(i).meets(positions[k], normals[k], radii[k], kSameFacing, at)) return false;
+    return std::abs(at) >= kLeastLayer_m && std::abs(at) <= kMostLayer_m;
   }
 
-  /// All that areLayers() may hold for.
-  Eigen::AlignedBox3f boxAlongNormal(std::size_t i) const {
-    const Eigen::Vector3f reach =
-        kMostLayer_m * normals[i].cwiseAbs() + Eigen::Vector3f::Constant(largest_radius);
-    return {positions[i] - reach, positions[i] + reach};
-  }
+  NormalLine lineOf(std::size_t i) const { return {positions[i], normals[i]}; }
 
   std::vector<std::size_t> indices;
   std::vector<Eigen::Vector3f> positions, normals;
@@ -67,7 +59,7 @@ std::size_t removeYoungerLayers(SurfelMap& map) {
   parallelFor(stable.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       char& gone = doomed[stable.indices[i]];
-      grid.visit(stable.boxAlongNormal(i), [&](std::size_t k) {
+      grid.visit(stable.lineOf(i).box(kMostLayer_m, stable.largest_radius), [&](std::size_t k) {
         if (stable.created[k] < stable.created[i] && gone == 0) gone = stable.areLayers(i, k);
       });
     }

@@ -23,13 +23,6 @@ constexpr int kProbationFrames = 60;
 // After a gap so long the camera may be where a fall threw it, and one frame is little to go by.
 constexpr double kMaxBlind_s = 0.25;
 
-Matrix6d diagonal(double sigma_m, double sigma_rad) {
-  Vector6d variance;
-  variance.head<3>().setConstant(sigma_m * sigma_m);
-  variance.tail<3>().setConstant(sigma_rad * sigma_rad);
-  return variance.asDiagonal();
-}
-
 }  // namespace
 
 Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
@@ -92,8 +85,8 @@ PosePrior Localiser::predict(const SparseMotion& motion, double elapsed_s) const
   Matrix6d noise = motion.covariance;
   if (!motion.found) {
     step = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
-    noise = diagonal(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
-                     kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+    noise = independentCovariance(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
+                                  kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
   }
   prior.is_measured = motion.found;
   prior.T_map_camera = previous_.T_map_camera * step;

@@ -96,10 +96,7 @@ void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
   const Eigen::Isometry3d T_map_now = T_map_camera * T_reckoned.inverse() * T_reckoned_;
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
   previous_.T_map_camera = T_map_now;
-  Vector6d variance;
-  variance << Eigen::Vector3d::Constant(kSuggested_m * kSuggested_m),
-      Eigen::Vector3d::Constant(kSuggested_rad * kSuggested_rad);
-  previous_.covariance = variance.asDiagonal();
+  previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
   previous_.velocity.setZero();
   proofs_ = kProofs - kProofsOfPlace;
   is_suggested_ = is_place_verified_ = true;

@@ -53,19 +53,18 @@ const ModelView& Mapper::State::viewFrom(const Eigen::Isometry3d& T) {
 Location Mapper::State::locate(const StaticFrame& input) {
   const std::int64_t stamp_ns = input.frame.stamp_ns;
   if (map.frame() >= 0) {
-    return localiser.locate(frame, stamp_ns, input.flow, input.forced, view,
-                            {[this](const auto& T) {
-      return modelFrom(T); },
-                             [this](const auto& T) -> auto& { return viewFrom(T);
+    MapRenderers render;
+    render.model = [this](const Eigen::Isometry3d& T) { return modelFrom(T); };
+    render.view = [this](const Eigen::Isometry3d& T) -> const ModelView& { return viewFrom(T); };
+    return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render);
   }
-});
-}  // namespace pf
-const auto needed = config.tracking.min_valid_fraction * static_cast<double>(frame.depth_m.total());
-if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
-Location nowhere;
-nowhere.outcome = FrameOutcome::no_depth;
-nowhere.T_map_camera = T_map_start;
-return nowhere;
+  const auto needed =
+      config.tracking.min_valid_fraction * static_cast<double>(frame.depth_m.total());
+  if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
+  Location nowhere;
+  nowhere.outcome = FrameOutcome::no_depth;
+  nowhere.T_map_camera = T_map_start;
+  return nowhere;
 }
 
 void Mapper::State::fuse(const StaticFrame& input, const Location& location) {

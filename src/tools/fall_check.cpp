@@ -43,7 +43,7 @@ Trajectory mappedPoses(const SavedMap& map, std::int64_t until_ns) {
   for (const FrameRecord& frame : map.frames) {
     const Keyframe& keyframe = map.keyframes.at(static_cast<std::size_t>(frame.pose.keyframe));
     if (keyframe.fragment != 0 || frame.stamp_ns >= until_ns) continue;
-    poses.push_back({frame.stamp_ns, keyframe.T_map_camera * frame.pose.T_keyframe_camera});
+    poses.push_back({frame.stamp_ns, poseOf(frame.pose, map.keyframes)});
   }
   return poses;
 }

@@ -66,9 +66,7 @@ void check(const std::string& file) {
 Trajectory trajectoryOf(const MapContent& content) {
   Trajectory trajectory;
   for (const FrameRecord& frame : content.frames) {
-    const auto keyframe = static_cast<std::size_t>(frame.pose.keyframe);
-    trajectory.push_back(
-        {frame.stamp_ns, content.keyframes[keyframe].T_map_camera * frame.pose.T_keyframe_camera});
+    trajectory.push_back({frame.stamp_ns, poseOf(frame.pose, content.keyframes)});
   }
   std::stable_sort(trajectory.begin(), trajectory.end(),
                    [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });

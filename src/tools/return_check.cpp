@@ -57,8 +57,7 @@ class Recording {
   Recording(const Options& options, const SavedMap& map)
       : source_(openTumFolder(options.sequence)), stamps_ns_(listTumFrames(options.sequence)) {
     for (const FrameRecord& frame : map.frames) {
-      const Keyframe& keyframe = map.keyframes.at(static_cast<std::size_t>(frame.pose.keyframe));
-      poses_[frame.stamp_ns] = keyframe.T_map_camera * frame.pose.T_keyframe_camera;
+      poses_[frame.stamp_ns] = pf::poseOf(frame.pose, map.keyframes);
     }
     const auto known = std::count_if(stamps_ns_.begin(), stamps_ns_.end(),
                                      [&](std::int64_t stamp) { return poses_.count(stamp) > 0; });

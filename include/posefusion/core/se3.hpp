@@ -37,6 +37,9 @@ double angleOf(const Eigen::Isometry3d& T);
 /// Does a motion shift by at most `shift_m` and turn by at most `turn_rad`?
 bool isWithin(const Eigen::Isometry3d& T, double shift_m, double turn_rad);
 
+/// Covariance of a twist whose parts are independent, each with these standard deviations.
+Matrix6d independentCovariance(double sigma_m, double sigma_rad);
+
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 

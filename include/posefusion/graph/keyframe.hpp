@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <vector>
 
 namespace pf {
 
@@ -20,6 +21,12 @@ struct RelativePose {
   int keyframe = -1;
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
 };
+
+/// The pose in the map. Throws std::out_of_range where there is no such keyframe.
+inline Eigen::Isometry3d poseOf(const RelativePose& pose, const std::vector<Keyframe>& keyframes) {
+  return keyframes.at(static_cast<std::size_t>(pose.keyframe)).T_map_camera *
+         pose.T_keyframe_camera;
+}
 
 /// Where a frame was.
 struct FrameRecord {

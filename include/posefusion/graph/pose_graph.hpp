@@ -64,10 +64,7 @@ class PoseGraph {
   /// Throws like addLoop(), and when both are of one fragment.
   GraphResult joinFragment(const PoseConstraint& loop);
 
-  Eigen::Isometry3d poseOf(const RelativePose& pose) const {
-    return keyframes_.at(static_cast<std::size_t>(pose.keyframe)).T_map_camera *
-           pose.T_keyframe_camera;
-  }
+  Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }
 
   /// All that must be kept to go on later.
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
