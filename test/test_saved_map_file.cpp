@@ -6,18 +6,13 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <thread>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/core/stamps.hpp"
+#include "posefusion/io/files.hpp"
 #include "posefusion/slam/loop_thread.hpp"
-#include "program.hpp"
 #include "simulated_sequence.hpp"
-#include "simulator/output.hpp"
-#include "simulator/scenario.hpp"
-#include "simulator/simulation.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
@@ -97,9 +92,15 @@ TemporaryFolder* SavedMapFile::folder_ = nullptr;
 TEST_F(SavedMapFile, GivesBackWhatAMapperHas) {
   Session session;
   session.follow(0, kMapped);
-  const Mapper& mapper = session.mapper;
+  Mapper& mapper = session.mapper;
+  EXPECT_FALSE(mapper.placed());
+  EXPECT_TRUE(mapper.worldFromMap().isApprox(bodyFromOptical()));
+  const Eigen::Isometry3d T_world_map = Eigen::Translation3d(1, 2, 3) * bodyFromOptical();
+  mapper.place(T_world_map);
   session.save(own / "map.pfdb");
   const SavedMap saved = readSavedMap(own / "map.pfdb");
+  ASSERT_TRUE(saved.T_world_map);
+  EXPECT_EQ(saved.T_world_map->matrix(), T_world_map.matrix());
   EXPECT_TRUE(equal(saved.surfels, mapper.map().collect()));
   EXPECT_EQ(saved.frame, mapper.map().frame());
   EXPECT_EQ(saved.frames.size(), mapper.backEnd().frames().size());
@@ -116,6 +117,20 @@ TEST_F(SavedMapFile, GivesBackWhatAMapperHas) {
     EXPECT_EQ(cv::norm(a.thumbnail.color, b.thumbnail.color, cv::NORM_INF), 0);
     EXPECT_EQ(cv::norm(a.thumbnail.depth_m, b.thumbnail.depth_m, cv::NORM_INF), 0);
   }
+}
+
+TEST_F(SavedMapFile, AMapKeepsWhereItStands) {
+  const Eigen::Isometry3d T_world_map = Eigen::Translation3d(1, 2, 3) * bodyFromOptical();
+  Session session;
+  session.mapper.load(readSavedMap(copy()), MapUse::extend);
+  EXPECT_FALSE(session.mapper.placed()) << "made where nobody knew";
+  session.mapper.place(T_world_map);
+  Mapper again(config());
+  again.load(session.mapper.saved(room().frame(0).frame.camera), MapUse::extend);
+  ASSERT_TRUE(again.placed());
+  EXPECT_EQ(again.worldFromMap().matrix(), T_world_map.matrix());
+  again.reset();
+  EXPECT_FALSE(again.placed()) << "another map";
 }
 
 TEST_F(SavedMapFile, ACameraElsewhereIsFoundAndTheMapGrows) {
@@ -237,117 +252,12 @@ TEST_F(SavedMapFile, WhatCannotBeUsedIsRefusedByItsName) {
   MapWriter(whole, MapWriter::Mode::extend).write(update);
   EXPECT_EQ(errorOf([&] { readSavedMap(whole); }),
             whole + ": the small picture of keyframe 1 has 5 bytes, expected 33601");
+  update.blobs["T_world_map"] = std::string(12 * sizeof(double), '\0');  // a rotation of zeros
+  MapWriter(whole, MapWriter::Mode::extend).write(update);
+  EXPECT_EQ(errorOf([&] { readSavedMap(whole); }),
+            whole + ": where the map stands is no rigid motion");
   Mapper mapper(config());
   EXPECT_NE(errorOf([&] { mapper.load(SavedMap{}, MapUse::extend); }), "");
-}
-
-/// The program as a user runs it.
-class MapOptions : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    simulator::ScenarioChanges changes;
-    changes.duration_s = 1.0;
-    simulator::Simulation simulation(simulator::loadScenario("box_walker", changes));
-    const auto output = simulator::openTumOutput(*folder_ / "sequence", simulation);
-    for (int i = 0; i < simulation.frameCount(); ++i) output->add(simulation.frame(i));
-    output->finish(simulation);
-  }
-  static void TearDownTestSuite() { delete folder_; }
-
-  static std::string sequence() { return *folder_ / "sequence"; }
-  std::vector<std::string> with(std::vector<std::string> more) const {
-    more.insert(more.begin(), {sequence(), "--detector", "recorded", "--set", "frame.shrink=1"});
-    return more;
-  }
-  int run(const std::vector<std::string>& arguments, const std::string& name = "posefusion_run") {
-    const Program program(name, arguments, own / "log.txt");
-    const int code = program.exitCode();
-    said = program.said();
-    return code;
-  }
-
-  TemporaryFolder own;
-  std::string said;
-
- private:
-  static TemporaryFolder* folder_;
-};
-TemporaryFolder* MapOptions::folder_ = nullptr;
-
-TEST_F(MapOptions, ARunGoesOnInTheMapOfAnother) {
-  const std::string out = own / "out", map = out + "/map.pfdb";
-  ASSERT_EQ(run(with({"--output", out})), 0) << said;
-  ASSERT_EQ(run({"check", map}, "posefusion_map"), 0) << said;
-  EXPECT_FALSE(fs::exists(out + "/map.partial.pfdb"));
-  const std::string before = readFile(map);
-  const std::size_t frames = readSavedMap(map).frames.size();
-
-  ASSERT_EQ(run(with({"--output", own / "l", "--map", map, "--localize-only"})), 0) << said;
-  EXPECT_TRUE(readFile(map) == before);
-  EXPECT_FALSE(fs::exists(own / "l/map.pfdb"));
-  EXPECT_NE(said.find("0 bad"), std::string::npos) << said;
-  EXPECT_NE(said.find("ATE"), std::string::npos) << said;
-
-  ASSERT_EQ(run(with({"--output", own / "m", "--map", map})), 0) << said;
-  EXPECT_TRUE(readFile(map) == before);
-  EXPECT_GT(readSavedMap(own / "m/map.pfdb").frames.size(), frames);
-
-  ASSERT_EQ(run(with({"--output", own / "c", "--map", map, "--continue"})), 0) << said;
-  EXPECT_FALSE(fs::exists(own / "c/map.pfdb"));
-  EXPECT_EQ(readSavedMap(map).frames.size(), readSavedMap(own / "m/map.pfdb").frames.size());
-  EXPECT_TRUE(equal(readSavedMap(map).surfels, readSavedMap(own / "m/map.pfdb").surfels));
-}
-
-TEST_F(MapOptions, AKilledRunLeavesAWholeMap) {
-  const std::string out = own / "out", partial = out + "/map.partial.pfdb";
-  // The same frames over and over: enough for minutes.
-  const std::string input = own / "long";
-  fs::copy(sequence(), input, fs::copy_options::recursive);
-  const auto first = [&](const std::string& kind) {
-    return kind + "/" + fs::directory_iterator(input + "/" + kind)->path().filename().string();
-  };
-  const std::string color = first("rgb"), depth = first("depth");
-  std::string list;
-  for (int i = 0; i < 20000; ++i) {
-    const std::string stamp = formatStamp(1'000'000'000LL + i * 33'000'000LL);
-    list += stamp + " " + color + " " + stamp + " " + depth + "\n";
-  }
-  own.write("long/associations.txt", list);
-  const Program program("posefusion_run", {input, "--detector", "none", "--output", out},
-                        own / "run.txt");
-  // SQLite's file is there before the first write, its log grows with it.
-  for (int i = 0; i < 600; ++i) {
-    std::error_code none;
-    if (fs::file_size(partial + "-wal", none) > 300'000 && !none) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  program.send(SIGKILL);
-  EXPECT_EQ(program.exitCode(), -SIGKILL) << program.said();
-  ASSERT_EQ(run({"check", partial}, "posefusion_map"), 0) << said;
-  EXPECT_GT(readSavedMap(partial).frames.size(), 0U);
-  // The next run keeps it under another name.
-  ASSERT_EQ(run(with({"--output", out, "--max-frames", "3"})), 0) << said;
-  EXPECT_EQ(run({"check", partial + ".old"}, "posefusion_map"), 0) << said;
-}
-
-TEST_F(MapOptions, ABadMapIsRefusedBeforeAnythingRuns) {
-  const std::string out = own / "out", bad = own.write("bad.pfdb", std::string(5000, 'x'));
-  EXPECT_EQ(run(with({"--output", out, "--map", bad})), 1);
-  EXPECT_NE(said.find(bad + ": is no map of posefusion"), std::string::npos) << said;
-  EXPECT_EQ(run(with({"--output", out, "--map", own / "none"})), 1);
-  EXPECT_NE(said.find("none: cannot be opened"), std::string::npos) << said;
-  EXPECT_NE(run(with({"--output", out, "--localize-only"})), 0);
-  EXPECT_NE(run(with({"--output", out, "--map", bad, "--localize-only", "--continue"})), 0);
-  ASSERT_EQ(run(with({"--output", own / "m", "--max-frames", "3"})), 0) << said;
-  const std::string map = own / "m/map.pfdb";
-  const std::string camera = own.write(
-      "camera.yaml",
-      "width: 320\nheight: 240\nfx: 200\nfy: 200\ncx: 160\ncy: 120\ndepth_factor: 5000\n");
-  EXPECT_EQ(run(with({"--output", out, "--map", map, "--camera", camera})), 1);
-  EXPECT_NE(said.find(map + ": is a map of another camera"), std::string::npos) << said;
-  EXPECT_FALSE(fs::exists(out));
 }
 
 }  // namespace

@@ -55,9 +55,6 @@ class MapSaver {
   /// naming it.
   void continueIn(const std::string& file, const MapToSave& map);
 
-  /// The core's map in the map frame, once it is known; until then the first camera is level.
-  void setFrame(const Eigen::Isometry3d& T_map_start) { T_map_start_ = T_map_start; }
-
   /// Returns a sentence that tells what was written where. Throws InputError when there is nothing
   /// to save, or naming what cannot be written.
   std::string save(const MapToSave& map);
@@ -89,12 +86,11 @@ class MapSaver {
   std::string saveContinued(const MapToSave& map);
   void saveDatabase(const MapToSave& map);
   void endRecording();
-  void saveOnTheWay(const pf::SurfelMap& map);
+  void saveOnTheWay(const pf::Mapper& mapper);
   /// Waits for it; returns what went wrong.
   std::string endSaveOnTheWay();
 
   MapSaverSettings settings_;
-  Eigen::Isometry3d T_map_start_ = pf::bodyFromOptical();
   std::optional<pf::RunFolder> folder_;             // of the map that grows now
   std::deque<pf::RunFolder> ended_;                 // of the maps before it, oldest first
   std::unique_ptr<pf::TrajectoryJournal> journal_;  // from the first pose on

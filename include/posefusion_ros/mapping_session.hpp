@@ -38,8 +38,8 @@ class MappingSession {
   const pf::Mapper& mapper() const { return *mapper_; }
   const pf::LoopExchange& loops() const { return loops_; }
   const MapSaver& saver() const { return saver_; }
-  /// See MapSaver.
-  void setFrame(const Eigen::Isometry3d& T_map_start) { saver_.setFrame(T_map_start); }
+  /// See Mapper.
+  void place(const Eigen::Isometry3d& T_world_map) { mapper_->place(T_world_map); }
   /// From the next frame on, for this map and those after it.
   void set(const pf::TrackingConfig& tracking) {
     config_.tracking = tracking;

@@ -35,7 +35,8 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless);
 ///
 /// The core's map begins at the first camera pose. The map frame begins at the base (odometry where
 /// there is one) as TF has it at that time; without a base frame the first camera counts as level.
-/// A loaded map begins at the base too, whose camera is taken to be mounted as it was then. Not
+/// A loaded map keeps the map frame that it was made in; where its file does not tell of one (made
+/// offline), it begins at the base too, whose camera is taken to be mounted as it was then. Not
 /// thread safe.
 class PoseOutput {
  public:
@@ -53,8 +54,12 @@ class PoseOutput {
   /// Loops have moved the poses told so far: the path follows. `corrected`: of the camera.
   void correct(const pf::Trajectory& corrected);
 
-  /// Another map. `is_loaded`: it began in a session before.
-  void reset(bool is_loaded = false);
+  /// Another map, that begins with the next pose.
+  void reset();
+
+  /// Another map, that began in a session before; `T_map_start`: where it stood then, if that is
+  /// known.
+  void load(const std::optional<Eigen::Isometry3d>& T_map_start);
 
   void set(const PublishingConfig& publishing) { settings_.publishing = publishing; }
 

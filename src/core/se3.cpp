@@ -101,6 +101,13 @@ Matrix6d independentCovariance(double sigma_m, double sigma_rad) {
   return variance.asDiagonal();
 }
 
+bool isRigid(const Eigen::Isometry3d& T) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::Matrix3d R = T.linear();
+  return T.matrix().allFinite() && R.determinant() > 0 &&
+         (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < kTolerance;
+}
+
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d out = T;
   out.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();

@@ -2,25 +2,14 @@
 #include "graph_checks.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
 
 namespace pf {
-namespace {
-
-constexpr double kRotationTolerance = 1e-6;
-
-bool isRigid(const Eigen::Isometry3d& T) {
-  const Eigen::Matrix3d R = T.linear();
-  return T.matrix().allFinite() && R.determinant() > 0 &&
-         (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < kRotationTolerance;
-}
-
-}  // namespace
 
 void throwUnlessUsable(const Keyframe& keyframe) {
   const std::string name = "keyframe " + std::to_string(keyframe.id);

@@ -6,13 +6,18 @@
 #include <sstream>
 #include <utility>
 
+#include "map_encoding.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
 
 namespace pf {
 namespace {
 
 // With the time that a write takes, less than a second is lost.
 constexpr std::chrono::milliseconds kPeriod{500};
+
+// Name of the blob that holds Mapper::placed().
+constexpr char kPlace[] = "T_world_map";
 
 constexpr std::size_t kPixels = std::size_t{Thumbnail::kWidth} * Thumbnail::kHeight;
 constexpr std::size_t kThumbnailBytes = 1 + kPixels * (3 + sizeof(float));
@@ -65,6 +70,7 @@ std::vector<KeyframeView> readViews(const MapReader& reader, const MapContent& c
 SavedMap savedMap(const MapReader& reader) {
   MapContent content = reader.content();
   SavedMap map;
+  map.T_world_map = placeOf(content);
   map.camera = content.camera;
   map.brightness = content.brightness;
   map.surfels = reader.surfels();
@@ -85,6 +91,14 @@ std::string textOf(const PinholeCamera& c) {
 }
 
 }  // namespace
+
+std::optional<Eigen::Isometry3d> placeOf(const MapContent& content) {
+  const auto blob = content.blobs.find(kPlace);
+  if (blob == content.blobs.end()) return std::nullopt;
+  const Eigen::Isometry3d T_world_map = decodeTransform(blob->second);
+  if (!isRigid(T_world_map)) throw InputError("where the map stands is no rigid motion");
+  return T_world_map;
+}
 
 SavedMap readSavedMap(const std::string& path) {
   try {
@@ -165,6 +179,7 @@ MapUpdate MapRecording::changes(const Mapper& mapper) const {
     update.images.push_back({static_cast<int>(view.id), view.intensity, view.depth_mm});
     update.blobs[blobName(view.id)] = encodeThumbnail(view);
   }
+  if (mapper.placed()) update.blobs[kPlace] = encode(*mapper.placed());
   update.block_count = static_cast<std::uint32_t>(mapper.map().blocks().size());
   update.blocks = changedBlocks(mapper.map(), written_.frame);
   return update;

@@ -67,7 +67,7 @@ class FusionNodelet : public ChainNodelet {
     closer_ = link;
 
     pose_output_ = std::make_unique<PoseOutput>(handle, poses);
-    pose_output_->reset(session_->isLoaded());
+    beginPoses();
     worker_ = std::make_unique<Worker<Set>>(settings.lossless ? 0 : queue,
                                             [this](const Set& set) { process(set); });
     map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
@@ -173,7 +173,7 @@ class FusionNodelet : public ChainNodelet {
   void publishPose(const std_msgs::Header& image, const FrameStatus& status, std::string& reason) {
     std::string note;
     if (!pose_output_->publish(image, status, note)) note = "no pose published: " + note;
-    if (pose_output_->mapFromStart()) session_->setFrame(*pose_output_->mapFromStart());
+    if (pose_output_->mapFromStart()) session_->place(*pose_output_->mapFromStart());
     if (!reason.empty() && !note.empty()) reason += "; ";
     reason += note;
   }
@@ -209,8 +209,16 @@ class FusionNodelet : public ChainNodelet {
     beginOutput();
   }
 
+  void beginPoses() {
+    if (session_->isLoaded()) {
+      pose_output_->load(session_->mapper().placed());
+    } else {
+      pose_output_->reset();
+    }
+  }
+
   void beginOutput() {
-    pose_output_->reset(session_->isLoaded());
+    beginPoses();
     map_output_->reset();
   }
 

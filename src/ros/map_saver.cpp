@@ -72,9 +72,10 @@ std::string MapSaver::save(const MapToSave& map) {
   const pf::Trajectory trajectory = map.trajectory();
   if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
   endSaveOnTheWay();
+  const Eigen::Isometry3d T_world_map = map.mapper.worldFromMap();
   const pf::RunFolder& target = folder();
-  pf::saveTrajectory(target.file(kTrajectory), pf::inWorld(T_map_start_, trajectory), kPose);
-  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map(), T_map_start_);
+  pf::saveTrajectory(target.file(kTrajectory), pf::inWorld(T_world_map, trajectory), kPose);
+  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map(), T_world_map);
   const std::string continued = saveContinued(map);
   if (continued.empty() && (recording_ || !isOn())) saveDatabase(map);
   target.makeLatest();
@@ -146,7 +147,6 @@ std::string MapSaver::beginAnew(const MapToSave& map) {
 }
 
 void MapSaver::abandon() {
-  T_map_start_ = pf::bodyFromOptical();
   endSaveOnTheWay();
   journal_.reset();
   recording_.reset();
@@ -168,12 +168,13 @@ std::string MapSaver::note(const pf::FrameStatus& status, const MapToSave& map, 
   } catch (const std::exception& error) {
     return error.what();
   }
-  if (status.located && !journal_->add({status.stamp_ns, T_map_start_ * status.T_map_camera}))
+  if (status.located &&
+      !journal_->add({status.stamp_ns, map.mapper.worldFromMap() * status.T_map_camera}))
     return folder().file(kPartial) + ": cannot be written (disk full?)";
   const auto period = std::chrono::duration<double>(settings_.period_s);
   if (settings_.period_s > 0 && Clock::now() - saved_ >= period) {
     const std::string failed = endSaveOnTheWay();
-    saveOnTheWay(map.mapper.map());
+    saveOnTheWay(map.mapper);
     if (!failed.empty()) return failed;
   }
   return trouble.empty() ? folder().lowSpace() : trouble;
@@ -188,18 +189,19 @@ std::string MapSaver::record(const MapToSave& map, bool changed) {
   return recording_ ? recording_->update(map.camera, map.mapper) : "";
 }
 
-void MapSaver::saveOnTheWay(const pf::SurfelMap& map) {
+void MapSaver::saveOnTheWay(const pf::Mapper& mapper) {
   saved_ = Clock::now();
   // A copy takes some milliseconds, the disk may take a second.
-  saving_ = std::async(std::launch::async, [copy = map, target = folder(), T = T_map_start_] {
-    try {
-      pf::saveMap(target.file(kMap), copy, T);
-      target.makeLatest();
-      return std::string();
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-  });
+  saving_ = std::async(std::launch::async,
+                       [copy = mapper.map(), target = folder(), T = mapper.worldFromMap()] {
+                         try {
+                           pf::saveMap(target.file(kMap), copy, T);
+                           target.makeLatest();
+                           return std::string();
+                         } catch (const std::exception& error) {
+                           return std::string(error.what());
+                         }
+                       });
 }
 
 std::string MapSaver::endSaveOnTheWay() { return saving_.valid() ? saving_.get() : ""; }

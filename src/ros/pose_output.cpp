@@ -49,14 +49,20 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
   reset();
 }
 
-void PoseOutput::reset(bool is_loaded) {
-  is_loaded_ = is_loaded;
+void PoseOutput::reset() {
+  is_loaded_ = false;
   T_map_start_.reset();
   path_mounts_.clear();
   T_map_base_before_.reset();
   path_.poses.clear();
   path_.header.frame_id = settings_.map_frame;
   path_sent_ = ros::Time();
+}
+
+void PoseOutput::load(const std::optional<Eigen::Isometry3d>& T_map_start) {
+  reset();
+  is_loaded_ = true;
+  T_map_start_ = T_map_start;
 }
 
 bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& note) {

@@ -140,17 +140,17 @@ std::string RunReport::summary(std::size_t surfels) const {
   return out.dump(2) + "\n";
 }
 
-void RunReport::write(const std::string& folder, const SurfelMap& map) const {
-  const Eigen::Isometry3d T_file_map = bodyFromOptical();
+void RunReport::write(const std::string& folder, const SurfelMap& map,
+                      const Eigen::Isometry3d& T_world_map) const {
   saveTrajectory(
-      folder + "/trajectory.txt", inWorld(T_file_map, trajectory_),
+      folder + "/trajectory.txt", inWorld(T_world_map, trajectory_),
       "pose of the camera (optical frame: z forward, x right, y down) in the map (z up)");
   if (!live_.empty()) {
-    saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_file_map, live_),
+    saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_world_map, live_),
                    "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
                    "up), as told when the frame came: loops found later do not correct it");
   }
-  writeSummary(folder, map, saveMap(folder + "/map.ply", map, T_file_map));
+  writeSummary(folder, map, saveMap(folder + "/map.ply", map, T_world_map));
 }
 
 void RunReport::writeSummary(const std::string& folder, const SurfelMap& map,

@@ -184,6 +184,14 @@ ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T
 
 const SurfelMap& Mapper::map() const { return state_->map; }
 
+void Mapper::place(const Eigen::Isometry3d& T_world_map) { state_->T_world_map = T_world_map; }
+
+const std::optional<Eigen::Isometry3d>& Mapper::placed() const { return state_->T_world_map; }
+
+Eigen::Isometry3d Mapper::worldFromMap() const {
+  return state_->T_world_map.value_or(bodyFromOptical());
+}
+
 void Mapper::set(const TrackingConfig& tracking) {
   state_->config.tracking = tracking;
   state_->localiser.set(tracking);
@@ -194,6 +202,7 @@ std::size_t Mapper::add(const SurfelArrays& surfels) { return state_->map.add(su
 void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   State& s = *state_;
   s.map.clear();
+  s.T_world_map.reset();
   s.view = ModelView();
   s.localiser.reset();
   s.T_map_start = T_map_camera;

@@ -127,6 +127,7 @@ void Mapper::load(SavedMap saved, MapUse use) {
                   saved.graph_version);
   reset();
   s.map.restore(saved.surfels, saved.frame);
+  s.T_world_map = saved.T_world_map;
   s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
   s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
   for (KeyframeView& view : saved.views) {
@@ -153,6 +154,7 @@ SavedMap Mapper::saved(const PinholeCamera& camera) const {
   saved.brightness = s.localiser.brightness();
   saved.surfels = s.map.collect();
   saved.frame = s.map.frame();
+  saved.T_world_map = s.T_world_map;
   saved.keyframes = graph.keyframes();
   saved.constraints = graph.constraints();
   saved.graph_version = graph.version();

@@ -35,6 +35,7 @@ struct Mapper::State {
 
   Config config;
   SurfelMap map;
+  std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
   WorkingFrame frame;

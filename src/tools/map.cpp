@@ -14,6 +14,7 @@
 #include "posefusion/io/map_database.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/ply.hpp"
+#include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/plan_picture.hpp"
 #include "posefusion/slam/config.hpp"
@@ -97,10 +98,11 @@ void exportKeyframes(const MapReader& reader, const MapContent& content,
 void exportAll(const std::string& file, const std::string& folder) {
   const MapReader reader(file);
   const MapContent content = reader.content();
+  const Eigen::Isometry3d T_world_map = placeOf(content).value_or(bodyFromOptical());
   makeFolder(folder);
   const std::size_t stable =
-      saveMap(folder + "/map.ply", mapOf(reader, content, file), bodyFromOptical());
-  const Trajectory trajectory = inWorld(bodyFromOptical(), trajectoryOf(content));
+      saveMap(folder + "/map.ply", mapOf(reader, content, file), T_world_map);
+  const Trajectory trajectory = inWorld(T_world_map, trajectoryOf(content));
   saveTrajectory(folder + "/trajectory.txt", trajectory, "poses of the camera in the map (z up)");
   exportKeyframes(reader, content, folder + "/keyframes");
   if (!trajectory.empty()) {

@@ -76,6 +76,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   RunObservers observers(options, pipeline.mapper().map());
   const std::size_t limit = options.max_frames > 0 ? options.max_frames : SIZE_MAX;
   Progress progress(std::min(source.frameCount(), limit));
+  const Eigen::Isometry3d T_world_map = pipeline.mapper().worldFromMap();
   std::exception_ptr failure;
   bool full = false, disk_full = false;
   try {
@@ -83,7 +84,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
       report.add(frame);
       observers.add(frame);
       if (frame.status.located &&
-          !journal.add({frame.status.stamp_ns, bodyFromOptical() * frame.status.T_map_camera}) &&
+          !journal.add({frame.status.stamp_ns, T_world_map * frame.status.T_map_camera}) &&
           !std::exchange(disk_full, true)) {
         progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
       }
@@ -129,7 +130,7 @@ int run(const RunOptions& options) {
   const auto failure = process(options, *source, pipeline, report, journal, map);
   report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
   report.setVerification(pipeline.loopVerificationMs());
-  report.write(options.output, pipeline.mapper().map());
+  report.write(options.output, pipeline.mapper().map(), pipeline.mapper().worldFromMap());
   journal.remove();
   map.finish();
   const int signal = stop_requested;

@@ -116,6 +116,47 @@ TEST_F(ChainLoading, AMapGoesOnAsInTheOfflineChainToTheBit) {
   EXPECT_EQ(pf::readFile(folder / "out/latest/map.ply"), pf::readFile(folder / "expected.ply"));
 }
 
+TEST_F(ChainLoading, AMapStaysWhereItStoodInTheMapFrame) {
+  const Eigen::Isometry3d T_world_map = Eigen::Translation3d(1, 2, 0.5) *
+                                        Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                                        pf::bodyFromOptical();
+  const std::string placed = folder / "placed.pfdb";
+  pf::Config config;
+  config.pose.detector = "none";
+  config.frame.shrink = 1;
+  pf::Pipeline pipeline(config, pf::makePoseDetector(config.pose, {}));
+  {
+    pf::Mapper mapper(config);
+    mapper.load(pf::readSavedMap(map()), pf::MapUse::extend);
+    mapper.place(T_world_map);
+    pf::MapRecording recording(placed, pf::MapWriter::Mode::create, "", mapper);
+    recording.update(frame(0).camera, mapper);
+    recording.finish(mapper);
+  }
+  pipeline.load(pf::readSavedMap(placed), pf::MapUse::extend);
+  chain->set("map_file", placed);
+  ASSERT_TRUE(chain->load());
+  int located = 0;
+  for (int i = 0; i < 35; ++i) {
+    const pf::FrameStatus expected = pipeline.process(frame(i)).status;
+    const TrackingStatusMsg status = process(i);
+    if (!status.located) continue;
+    ++located;
+    const Eigen::Vector3d at = T_world_map * expected.T_map_camera.translation();
+    EXPECT_NEAR(status.pose.position.x, at.x(), 1e-9) << i;
+    EXPECT_NEAR(status.pose.position.y, at.y(), 1e-9) << i;
+    EXPECT_NEAR(status.pose.position.z, at.z(), 1e-9) << i;
+  }
+  EXPECT_GT(located, 5);
+  chain->unload();
+  const pf::SavedMap after = pf::readSavedMap(folder / "out/latest/map.pfdb");
+  ASSERT_TRUE(after.T_world_map);
+  EXPECT_EQ(after.T_world_map->matrix(), T_world_map.matrix());
+  pipeline.finish();
+  pf::saveMap(folder / "expected.ply", pipeline.mapper().map(), T_world_map);
+  EXPECT_EQ(pf::readFile(folder / "out/latest/map.ply"), pf::readFile(folder / "expected.ply"));
+}
+
 TEST_F(ChainLoading, ABadFileIsRefusedByItsNameAndNothingIsLost) {
   ASSERT_TRUE(chain->load());
   for (int i = 0; i < 3; ++i) process(i);

@@ -40,6 +40,9 @@ bool isWithin(const Eigen::Isometry3d& T, double shift_m, double turn_rad);
 /// Covariance of a twist whose parts are independent, each with these standard deviations.
 Matrix6d independentCovariance(double sigma_m, double sigma_rad);
 
+/// Whether all of it is finite and its rotation is one, as far as rounding goes.
+bool isRigid(const Eigen::Isometry3d& T);
+
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <future>
+#include <optional>
 #include <string>
 
 #include "posefusion/io/frame_source.hpp"
@@ -14,6 +15,10 @@ namespace pf {
 /// Reads all of a map file that a mapper needs. Throws InputError naming the file and what is wrong
 /// with it.
 SavedMap readSavedMap(const std::string& path);
+
+/// Where a map stands in the frame of those who use it (Mapper::placed()). Throws InputError where
+/// what the file says cannot be.
+std::optional<Eigen::Isometry3d> placeOf(const MapContent& content);
 
 /// Why frames of this (rectified) camera do not fit the map of a file; empty when they do. `whose`:
 /// words for where the frames are from.

@@ -61,8 +61,10 @@ class RunReport {
 
   /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops),
   /// trajectory_live.txt (as they were told at the time), map.ply, summary.json, map.png and
-  /// people.png. Throws InputError naming the file.
-  void write(const std::string& folder, const SurfelMap& map) const;
+  /// people.png; the first three in the frame that `T_world_map` leads to. Throws InputError
+  /// naming the file.
+  void write(const std::string& folder, const SurfelMap& map,
+             const Eigen::Isometry3d& T_world_map = bodyFromOptical()) const;
 
   /// Of these, summary.json and the pictures. `map` lies in the frame of the trajectory; `surfels`
   /// are in map.ply.

@@ -84,6 +84,16 @@ class Mapper {
 
   const SurfelMap& map() const;
 
+  /// Tells where the map stands in the frame of those who use it (z up). Nothing in the map
+  /// changes; its files, and later sessions in it, keep that frame.
+  void place(const Eigen::Isometry3d& T_world_map);
+
+  /// Nothing until place() was called for this map, here or in a session before.
+  const std::optional<Eigen::Isometry3d>& placed() const;
+
+  /// The same for files; not placed, the first camera counts as level.
+  Eigen::Isometry3d worldFromMap() const;
+
   /// From the next frame on. The loop closer keeps what it began with.
   void set(const TrackingConfig& tracking);
 

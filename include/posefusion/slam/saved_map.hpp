@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
@@ -17,7 +19,8 @@ struct SavedMap {
   PinholeCamera camera;  ///< of the frames, rectified
   Brightness brightness;
   SurfelArrays surfels;
-  int frame = -1;  ///< SurfelMap::frame()
+  int frame = -1;                                ///< SurfelMap::frame()
+  std::optional<Eigen::Isometry3d> T_world_map;  ///< Mapper::place()
   std::vector<Keyframe> keyframes;
   std::vector<PoseConstraint> constraints;
   int graph_version = 0;
