@@ -39,7 +39,7 @@ People joinPeople(const People& network, People embedded, const cv::Size& image,
     }
     joined[static_cast<std::size_t>(index)] = true;
     Person& same = embedded.people[static_cast<std::size_t>(index)];
-    same.score = std::max(same.score, person.score);
+    same.score += (1.0F - same.score) * person.score;  // two say so that see different things
     for (std::size_t j = 0; j < same.joints.size(); ++j) {
       if (person.joints[j].p > 0.0F) same.joints[j] = person.joints[j];
     }

@@ -74,10 +74,12 @@ MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& bac
 std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
                            const std::vector<Background>& background) {
   std::vector<std::vector<int>> cells(detected.people.size());
+  std::vector<bool> in_mask(detected.people.size(), false);
   for (std::size_t cell = 0; cell < shown.detection.size(); ++cell) {
     const auto index = static_cast<std::size_t>(shown.detection[cell]);
-    if (shown.detection[cell] < 0 || shown.probability[cell] < kShownNew) continue;
-    if (index < cells.size()) cells[index].push_back(static_cast<int>(cell));
+    if (shown.detection[cell] < 0 || index >= cells.size()) continue;
+    in_mask[index] = true;
+    if (shown.probability[cell] >= kShownNew) cells[index].push_back(static_cast<int>(cell));
   }
   std::vector<bool> may_be_new;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -85,7 +87,7 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
     const bool before_map = cells[i].size() >= kMinMaskCells &&
                             vote.known > kKnownNew * static_cast<float>(cells[i].size()) &&
                             vote.nearer > kNearerNew * vote.known;
-    may_be_new.push_back(shown.empty() || detected.people[i].score >= kSureNewScore || before_map);
+    may_be_new.push_back(!in_mask[i] || detected.people[i].score >= kSureNewScore || before_map);
   }
   return may_be_new;
 }
