@@ -96,6 +96,24 @@ TEST(Fragments, NoneIsBegunWhereThatIsOff) {
   }
 }
 
+TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
+  Carried run(Carried::config(), false);
+  for (int i = kMapped - 1; i > 40; --i) run.see(i);
+  for (int i = 0; i < kCovered; ++i) run.see(40, true);
+  ASSERT_EQ(run.status_.state, TrackingState::lost);
+  for (int i = 0; i < 15; ++i) run.see(40);
+  ASSERT_EQ(run.status_.state, TrackingState::tracking);
+  ASSERT_EQ(run.status_.fragment, 1) << "it is back where it was lost";
+  const Config config = Carried::config();
+  run.loops_.emplace(config.loop, config.tracking, AnswerTime::after_lag);
+  run.mapper_.introduceCloser();
+  for (int i = 40; i >= 0; --i) run.see(i);
+  for (int i = 0; i < 40; ++i) run.see(i);
+  EXPECT_EQ(run.mapper_.backEnd().counts().joined, 1U);
+  EXPECT_EQ(run.status_.fragment, 0) << "it lies in the map of before";
+  EXPECT_LT(run.errorM(39), 0.02);
+}
+
 TEST(Fragments, AreJoinedWhenTheirPlaceIsFound) {
   Carried run(Carried::config(), true);
   int joined_after = 0;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mapper_scene.hpp"
+#include "posefusion/core/se3.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
 namespace pf {
@@ -55,6 +56,30 @@ TEST_F(MapperTest, ABareWallIsNotTrusted) {
   mapper.process({wall, {}, {}});
   wall.stamp_ns += 33333333;
   EXPECT_EQ(mapper.process({wall, {}, {}}).outcome, FrameOutcome::degenerate);
+}
+
+TEST_F(MapperTest, ATurnIntoTheUnknownWithoutASharpFrameIsFollowed) {
+  // From one end of the swing to the other.
+  constexpr int kStart = 24, kSharp = kStart + 3, kTurned = 72;
+  const SimulatedSequence turn("empty_box", kTurned + 6,
+                               {"depth.distortion=0", "camera.at_m=[2.1, 1.8, 1.35]",
+                                "camera.look_at_m=[2.4, 1.8, 1.3]", "camera.period_s=0.8"});
+  EXPECT_GT(angleOf(turn.pose(kStart).inverse() * turn.pose(kTurned)), 1.3);
+  Mapper mapper(config());
+  mapper.reset(turn.pose(kStart));
+  std::size_t mapped = 0;
+  for (int i = kStart; i < turn.frameCount(); ++i) {
+    const TrueFrame truth = turn.frame(i);
+    const bool forced = i >= kSharp && i < kTurned;
+    StaticFrame input{truth.frame, {}, {}};
+    input.forced = forced;
+    const FrameStatus status = mapper.process(input);
+    EXPECT_EQ(status.outcome, forced ? FrameOutcome::forced : FrameOutcome::fused) << "frame " << i;
+    EXPECT_TRUE(status.located);
+    EXPECT_LT(errorM(status, truth), 0.03) << "frame " << i;
+    if (i == kSharp) mapped = status.surfels;
+    if (forced) EXPECT_EQ(status.surfels, mapped) << "nothing blurred is fused";
+  }
 }
 
 TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {

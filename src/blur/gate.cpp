@@ -17,7 +17,12 @@ double BlurGate::threshold() const {
   return config_.relative_threshold * *middle;
 }
 
-BlurScore BlurGate::judge(const Sharpness& sharpness) {
+bool BlurGate::isDue(std::int64_t stamp_ns) const {
+  // Stamps jitter: what is due within a millisecond is due.
+  return 1e-9 * static_cast<double>(stamp_ns - passed_ns_) > config_.max_gap_s - 1e-3;
+}
+
+BlurScore BlurGate::judge(const Sharpness& sharpness, std::int64_t stamp_ns) {
   const bool fixed = config_.threshold > 0.0;
   BlurScore result;
   result.score = sharpness.laplacian_variance;
@@ -26,9 +31,10 @@ BlurScore BlurGate::judge(const Sharpness& sharpness) {
   result.threshold = threshold();
   const bool unknown = !fixed && sharpness.dull;
   const bool blurred = !unknown && result.measure < result.threshold;
-  result.forced = blurred && drops_in_a_row_ >= config_.max_consecutive_drops;
+  passed_ns_ = std::min(passed_ns_, stamp_ns);
+  result.forced = blurred && isDue(stamp_ns);
   result.sharp = !blurred || result.forced;
-  drops_in_a_row_ = result.sharp ? 0 : drops_in_a_row_ + 1;
+  if (result.sharp) passed_ns_ = stamp_ns;
   // Dropped frames count too: what lasts longer than a burst of blur is how the scene looks now.
   if (!unknown) recent_.push_back(sharpness.fine_detail);
   while (static_cast<int>(recent_.size()) > config_.history_frames) recent_.pop_front();
@@ -37,7 +43,7 @@ BlurScore BlurGate::judge(const Sharpness& sharpness) {
 
 void BlurGate::reset() {
   recent_.clear();
-  drops_in_a_row_ = 0;
+  passed_ns_ = kNever;
 }
 
 }  // namespace pf

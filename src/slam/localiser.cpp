@@ -60,7 +60,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
   }
-  const double blind_s = kNanosecond * static_cast<double>(stamp_ns - trusted_ns_);
+  const double blind_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
   if (state_ == TrackingState::doubtful && verdict.outcome == FrameOutcome::fused &&
       blind_s > kMaxBlind_s) {
     verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
@@ -147,14 +147,14 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   previous_.T_map_camera = T_map_located_ = location.T_map_camera;
   previous_.covariance = location.tracking.covariance;
   brightness_ = location.tracking.brightness;
-  trusted_ns_ = stamp_ns;
+  trusted_ns_ = seen_ns_ = stamp_ns;
   untrusted_in_a_row_ = reckoned_in_a_row_ = 0;
 }
 
 /// Not believed: the pose is carried on by the prediction, and told for as long as that is good.
 void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns) {
   ++untrusted_in_a_row_;
-  const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - trusted_ns_);
+  const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
   const SparseMotion& motion = location.motion;
   location.located =
       (motion.found && motion.inliers >= kManyCorners &&
@@ -163,6 +163,7 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
        isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
   if (location.outcome == FrameOutcome::forced) {
     location.located = true;
+    seen_ns_ = stamp_ns;
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;
     location.tracking.covariance = prior.covariance;

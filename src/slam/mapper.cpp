@@ -86,11 +86,12 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   view.stamp_ns = last_stamp_ns;
 }
 
-/// Where a frame was believed that is not to be fused.
-void Mapper::State::follow(const Location& location) {
+/// Where a frame was believed that is not to be fused. `fill`: it stands for the map where there is
+/// none.
+void Mapper::State::follow(const Location& location, bool fill) {
   map_at_loss.reset();
   rooms.clear();
-  showFrom(location.T_map_camera, false);
+  showFrom(location.T_map_camera, fill);
   view.stamp_ns = last_stamp_ns;
 }
 
@@ -116,10 +117,15 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   if (s.wantsFragment(input, location)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
   s.question.reset();
-  if (location.outcome == FrameOutcome::fused && !s.may_change) {
-    s.follow(location);
+  if (location.outcome == FrameOutcome::forced) {
+    s.follow(location, true);
+  } else if (location.outcome == FrameOutcome::fused && !s.may_change) {
+    s.follow(location, false);
   } else if (location.outcome == FrameOutcome::fused) {
-    if (location.is_return) s.fragment = fragmentAt(location.T_map_camera);
+    if (location.is_return) {
+      s.fragment = fragmentAt(location.T_map_camera);
+      s.map_at_loss.reset();  // if that is a fragment, it is not to be found in itself
+    }
     s.fuse(input, location);
     s.keep(input, location);
     s.askForFragment();

@@ -35,7 +35,7 @@ bool Mapper::State::wantsFragment(const StaticFrame& input, const Location& loca
 
 /// The frame begins a piece of the map of its own, far from all others.
 Location Mapper::State::beginFragment() {
-  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
+  if (!map_at_loss) map_at_loss = searchedMap();
   rooms = spreadOut(back_end.keyframePoses());
   fragment = ++last_fragment;
   lost_s = 0;
@@ -47,6 +47,18 @@ Location Mapper::State::beginFragment() {
   Location location = localiser.begin(frame, last_stamp_ns, T_map_camera, brightness);
   location.detail = "begins fragment " + std::to_string(fragment);
   return location;
+}
+
+/// A copy of the map to look for the camera in: where it is tracked in a fragment, the rest of the
+/// map, for in the fragment it would find itself.
+std::shared_ptr<const SurfelMap> Mapper::State::searchedMap() const {
+  auto searched = std::make_shared<SurfelMap>(map);
+  if (fragment != 0 && localiser.state() != TrackingState::lost) {
+    searched->removeIf([this](const SurfelArrays& surfels, std::size_t i) {
+      return fragmentAt(static_cast<double>(surfels.x[i])) == fragment;
+    });
+  }
+  return searched;
 }
 
 /// Asks now and then where in the rest of the map the fragment lies.
@@ -65,6 +77,7 @@ void Mapper::State::placeFragment(const TrackingResult& alignment) {
       back_end.graph().keyframes()[static_cast<std::size_t>(at_question.keyframe)];
   if (keyframe.fragment != fragment) return;
   const int other = back_end.nearest(alignment.T_map_camera);
+  if (back_end.graph().keyframes()[static_cast<std::size_t>(other)].fragment == fragment) return;
   const Eigen::Isometry3d& T_camera = at_question.T_keyframe_camera;
   const Eigen::Isometry3d T_map_keyframe = alignment.T_map_camera * T_camera.inverse();
   const Matrix6d A = adjoint(T_camera);

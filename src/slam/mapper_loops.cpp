@@ -70,7 +70,7 @@ void Mapper::State::askForPlace() {
       frame.valid_pixels < config.tracking.min_valid_fraction * pixels) {
     return;
   }
-  if (!map_at_loss) map_at_loss = std::make_shared<const SurfelMap>(map);
+  if (!map_at_loss) map_at_loss = searchedMap();
   tellCloser();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
@@ -116,7 +116,10 @@ void Mapper::take(const LoopAnswer& answer) {
   if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
 }
 
-void Mapper::introduceCloser() { state_->closer_is_old = !state_->views.empty(); }
+void Mapper::introduceCloser() {
+  state_->closer_is_old = !state_->views.empty();
+  state_->place_is_asked = false;  // of somebody who does not answer any more
+}
 
 void Mapper::load(SavedMap saved, MapUse use) {
   if (saved.frame < 0 || saved.keyframes.empty()) {

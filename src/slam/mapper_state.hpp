@@ -70,11 +70,12 @@ struct Mapper::State {
   const ModelView& viewFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
-  void follow(const Location& location);
+  void follow(const Location& location, bool fill);
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void tellCloser();
   void askForPlace();
+  std::shared_ptr<const SurfelMap> searchedMap() const;
   void countLostTime(const Location& location, std::int64_t before_ns);
   bool wantsFragment(const StaticFrame& input, const Location& location) const;
   Location beginFragment();

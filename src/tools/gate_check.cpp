@@ -33,8 +33,8 @@ double secondsToNormal(const std::vector<RgbdFrame>& recorded, const Change& cha
     RgbdFrame frame = recorded[phase < recorded.size() ? phase : turn - phase];
     frame.stamp_ns = static_cast<std::int64_t>(i) * 1'000'000'000 / static_cast<int>(kRate);
     if (i >= kBefore) frame.color = change(frame.color);
-    const bool sharp = pipeline.see(frame).blur.sharp;
-    if (i >= kBefore) passed.push_back(sharp);
+    const BlurScore blur = pipeline.see(frame).blur;
+    if (i >= kBefore) passed.push_back(blur.sharp && !blur.forced);
   }
   for (std::size_t first = 0; first + kRate <= passed.size(); ++first) {
     const auto begin = passed.begin() + static_cast<std::ptrdiff_t>(first);

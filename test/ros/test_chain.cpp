@@ -39,11 +39,11 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   chain.set("pose/detector", std::string("recorded"));
   chain.set("people_file", folder / "people.json");
   chain.set("output", folder.str());
-  chain.set("blur/max_consecutive_drops", 1);
+  chain.set("blur/max_gap_s", 0.05);
   ASSERT_TRUE(chain.load());
   pf::Config config;
   config.pose.detector = "recorded";
-  config.blur.max_consecutive_drops = 1;
+  config.blur.max_gap_s = 0.05;
   pf::Pipeline pipeline(config,
                         makePoseDetector(config.pose, pf::loadPeople(folder / "people.json")));
   pf::Trajectory expected;

@@ -47,11 +47,11 @@ TEST(RosParameters, ReachTheConfigurationWithAllTheirDigits) {
 TEST(RosParameters, TheFileIsReadFirst) {
   const pf::TemporaryFolder folder;
   XmlRpcValue values;
-  values["config"] = folder.write("some.yaml", "blur: {threshold: 4, max_consecutive_drops: 9}\n");
+  values["config"] = folder.write("some.yaml", "blur: {threshold: 4, max_gap_s: 0.9}\n");
   values["blur"]["threshold"] = 5;
   const pf::Config config = Parameters(values, "/gate").config({"blur"});
   EXPECT_EQ(config.blur.threshold, 5.0);
-  EXPECT_EQ(config.blur.max_consecutive_drops, 9);
+  EXPECT_EQ(config.blur.max_gap_s, 0.9);
   values["config"] = folder.write("bad.yaml", "blurr: {}\n");
   EXPECT_NE(errorOf([&] { Parameters(values, "/gate").config({"blur"}); }).find("bad.yaml"),
             std::string::npos);

@@ -11,7 +11,7 @@ struct BlurConfig {
   double threshold = 0.0;
   double relative_threshold = 0.2;
   int history_frames = 30;
-  int max_consecutive_drops = 15;
+  double max_gap_s = 0.1;
 };
 
 inline void visitFields(BlurConfig& c, FieldVisitor& v) {
@@ -26,8 +26,8 @@ inline void visitFields(BlurConfig& c, FieldVisitor& v) {
       "history_frames", c.history_frames, 1, 10000,
       "adaptive: how many frames, dropped ones too, make the median; at least twice a burst of "
       "blur");
-  v.integer("max_consecutive_drops", c.max_consecutive_drops, 0, 10000,
-            "after so many drops in a row the next frame passes, to be located but not fused");
+  v.number("max_gap_s", c.max_gap_s, 0.0, 1e3,
+           "a blurred frame passes, to be located but not fused, when none has for so long (s)");
 }
 
 }  // namespace pf

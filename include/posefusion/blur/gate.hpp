@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <deque>
+#include <limits>
 
 #include "posefusion/blur/config.hpp"
 #include "posefusion/blur/sharpness.hpp"
@@ -15,8 +17,8 @@ struct BlurScore {
                          ///< is set, else Sharpness::fine_detail
   double threshold = 0.0;  ///< 0 while nothing is known yet
   bool sharp = true;       ///< the frame may pass
-  bool forced = false;  ///< it passes only because too many before it were dropped: it is blurred
-                        ///< and should be located, not fused
+  bool forced = false;     ///< it passes only because none has for long: it is blurred and should
+                           ///< be located, not fused
 };
 
 /// Decides which frames are too blurred, from their sharpness and the recent past. Not thread safe.
@@ -24,19 +26,23 @@ class BlurGate {
  public:
   explicit BlurGate(const BlurConfig& config);
 
-  /// Call once for each frame, in order.
-  BlurScore judge(const Sharpness& sharpness);
+  /// Call once for each frame, in order. Where stamps jump back the gap is counted anew.
+  BlurScore judge(const Sharpness& sharpness, std::int64_t stamp_ns);
   void reset();
 
   /// From the next frame on; what is known of the recent frames stays.
   void set(const BlurConfig& config) { config_ = config; }
 
  private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
   double threshold() const;
+  /// Whether no frame has passed for so long that this one has to.
+  bool isDue(std::int64_t stamp_ns) const;
 
   BlurConfig config_;
-  std::deque<double> recent_;  // fine detail of the last frames, dropped ones too
-  int drops_in_a_row_ = 0;
+  std::deque<double> recent_;        // fine detail of the last frames, dropped ones too
+  std::int64_t passed_ns_ = kNever;  // stamp of the last frame that passed, or of the first one
 };
 
 }  // namespace pf

@@ -120,7 +120,8 @@ class Localiser {
   Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_reckoned_ = Eigen::Isometry3d::Identity();
   Brightness brightness_;
-  std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that was believed
+  std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that may be fused
+  std::int64_t seen_ns_ = 0;     ///< of the last that was located by its images, blurred ones too
   int untrusted_in_a_row_ = 0;
   int reckoned_in_a_row_ = 0;       ///< of those, located by dead reckoning
   int proofs_ = 0;                  ///< frames in a row that looked right since the loss
