@@ -30,7 +30,7 @@ ProcessedFrame frameAt(int i, FrameOutcome outcome) {
   input.depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(1000));
   frame.status.stamp_ns = input.stamp_ns;
   frame.status.outcome = outcome;
-  frame.status.located = outcome == FrameOutcome::fused;
+  frame.status.located = outcome == FrameOutcome::fused || outcome == FrameOutcome::forced;
   frame.status.T_map_camera.translation().x() = 0.01 * i * i;
   frame.status.tracking_ms = i;
   frame.status.fusion_ms = 1;
@@ -45,17 +45,18 @@ TEST(RunStatistics, CountsEachFrameOnce) {
   statistics.add(frameAt(3, FrameOutcome::few_inliers));
   statistics.add(frameAt(4, FrameOutcome::no_depth));
   statistics.add(frameAt(5, FrameOutcome::fused));
+  statistics.add(frameAt(6, FrameOutcome::forced));
   const FrameCounts& f = statistics.frames();
-  EXPECT_EQ(f.read, 6U);
-  EXPECT_EQ(f.tracked, 2U);
+  EXPECT_EQ(f.read, 7U);
+  EXPECT_EQ(f.tracked, 3U) << "the blurred one that passed by force was located";
   EXPECT_EQ(f.blurred, 1U);
   EXPECT_EQ(f.bad, 1U);
   EXPECT_EQ(f.lost, 2U);
-  EXPECT_DOUBLE_EQ(f.poseShare(), 2.0 / 6);
-  EXPECT_DOUBLE_EQ(f.sharpPoseShare(), 2.0 / 5);
+  EXPECT_DOUBLE_EQ(f.poseShare(), 3.0 / 7);
+  EXPECT_DOUBLE_EQ(f.sharpPoseShare(), 3.0 / 6);
   EXPECT_EQ(f.by_outcome.at("fused"), 2U);
   EXPECT_EQ(f.by_outcome.at("few_inliers"), 1U);
-  EXPECT_EQ(f.by_state.at("initializing"), 6U);
+  EXPECT_EQ(f.by_state.at("initializing"), 7U);
 }
 
 TEST(RunStatistics, MedianAndTailOfAStage) {

@@ -40,6 +40,7 @@ void RunStatistics::add(const ProcessedFrame& frame) {
       addTime("gate", frame.seen.gate_ms);
       return;
     case FrameOutcome::fused:
+    case FrameOutcome::forced:
       ++frames_.tracked;
       break;
     default:

@@ -16,8 +16,8 @@ struct FrameCounts {
   std::size_t read = 0;      ///< all frames that the input gave
   std::size_t bad = 0;       ///< unreadable, of another size, stamps going back
   std::size_t blurred = 0;   ///< dropped by the gate
-  std::size_t tracked = 0;   ///< tracked and fused
-  std::size_t lost = 0;      ///< offered to tracking and not fused
+  std::size_t tracked = 0;   ///< tracked and, unless too blurred for it, fused
+  std::size_t lost = 0;      ///< offered to tracking, and not believed
   std::size_t left_out = 0;  ///< nobody looked at them: live, the chain fell behind
   std::size_t posed = 0;     ///< located: tracked, or doubtful with a pose of their own
   std::map<std::string, std::size_t> by_state, by_outcome;  ///< of all that were read, by name
