@@ -52,9 +52,23 @@ TEST(FallCheck, WhoStaysLostHasNoTime) {
   auto frames = fallAndReturn();
   frames.resize(9);
   const FallReturn fall = checkReturn(frames, kUp_ns);
-  EXPECT_TRUE(fall.seen_ns);
-  EXPECT_FALSE(fall.found_ns);
+  EXPECT_TRUE(fall.slowest.seen_ns);
+  EXPECT_FALSE(fall.slowest.found_ns);
   EXPECT_FALSE(fall.seconds());
+}
+
+TEST(FallCheck, OfSeveralLossesTheSlowestCounts) {
+  auto frames = fallAndReturn();
+  frames[0].lost = true;  // at the start of a clip, before the fall
+  frames[0].tracking = frames[0].has_pose = false;
+  EXPECT_NEAR(*checkReturn(frames, kUp_ns).seconds(), 0.4, 1e-9);
+  frames.resize(9);
+  EXPECT_FALSE(checkReturn(frames, kUp_ns).seconds()) << "found once, and not after the fall";
+  // A second loss in which the map is never in view says nothing.
+  frames = fallAndReturn();
+  frames[11].lost = !(frames[11].tracking = frames[11].has_pose = false);
+  frames[11].overlap = 0;
+  EXPECT_NEAR(*checkReturn(frames, kUp_ns).seconds(), 0.4, 1e-9);
 }
 
 TEST(FallCheck, WhoHoldsOnIsThereAtOnce) {

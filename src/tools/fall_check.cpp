@@ -103,8 +103,8 @@ nlohmann::ordered_json toJson(const FallReturn& fall, std::int64_t start_ns) {
   const auto seconds = fall.seconds();
   return {
       {"lost", fall.was_lost},
-      {"map_in_view_after_s", after(fall.seen_ns)},
-      {"tracking_after_s", after(fall.found_ns)},
+      {"map_in_view_after_s", after(fall.slowest.seen_ns)},
+      {"tracking_after_s", after(fall.slowest.found_ns)},
       {"time_to_tracking_s", seconds ? nlohmann::ordered_json(*seconds) : nlohmann::ordered_json()},
       {"known_frames_since_loss", fall.since_loss.frames},
       {"of_them_with_a_pose", fall.since_loss.posed},

@@ -23,12 +23,22 @@ struct FallFrame {
   bool isWrong() const;  ///< from 0.10 m or 5 degrees on
 };
 
+/// One loss, until the next.
+struct Loss {
+  std::optional<std::int64_t> seen_ns;   ///< first sharp view that the map covers
+  std::optional<std::int64_t> found_ns;  ///< first frame in state `tracking`
+
+  /// From that view to that frame, 0 where it was sooner; nothing where it was not found, or the
+  /// map was never in view.
+  std::optional<double> seconds() const;
+};
+
 /// How a camera came back after it was lost in a fall.
 struct FallReturn {
   bool was_lost = false;
-  // Since the loss; since the beginning of the fall where the tracker held on through it.
-  std::optional<std::int64_t> seen_ns;   ///< first sharp view that the map covers
-  std::optional<std::int64_t> found_ns;  ///< first frame in state `tracking`
+  /// The slowest way back, of several losses; since the beginning of the fall where the tracker
+  /// held on through it.
+  Loss slowest;
   /// Frames that overlap the map, and of them those with a pose: counted from there, and once the
   /// camera is up again.
   struct Known {
@@ -37,8 +47,7 @@ struct FallReturn {
   std::size_t wrong = 0;          ///< poses since the fall that are wrong
   double worst_from_truth_m = 0;  ///< of all poses since the fall
 
-  /// Seconds (s) from that first view to `tracking`, 0 where it was sooner or never lost; nothing
-  /// where it was not found, or the map was never in view.
+  /// Of the slowest; 0 where it was never lost.
   std::optional<double> seconds() const;
 };
 
