@@ -82,6 +82,27 @@ TEST_F(MapperTest, ATurnIntoTheUnknownWithoutASharpFrameIsFollowed) {
   }
 }
 
+TEST_F(MapperTest, BlurredFramesProveNothingAndBreakNoProof) {
+  for (const bool all_blurred : {false, true}) {
+    Mapper mapper(config());
+    for (int i = 0; i < 20; ++i) mapper.process({room().frame(i).frame, {}, {}});
+    FrameStatus status;
+    for (int i = 20; i < 30; ++i) {
+      const cv::Mat covered = cv::Mat::zeros(240, 320, CV_16UC1);
+      status = mapper.process({withDepth(room().frame(i), covered), {}, {}});
+    }
+    ASSERT_EQ(status.state, TrackingState::lost);
+    int frames = 0;
+    for (; frames < 24 && status.state == TrackingState::lost; ++frames) {
+      StaticFrame input{room().frame(20).frame, {}, {}};
+      input.frame.stamp_ns = room().stamp(31 + frames);
+      input.forced = all_blurred || frames % 2 == 1;
+      status = mapper.process(input);
+    }
+    EXPECT_EQ(status.state == TrackingState::lost, all_blurred) << frames;
+  }
+}
+
 TEST_F(MapperTest, IsLostAfterAWhileAndComesBackWhereItWas) {
   Mapper mapper(config());
   for (int i = 0; i < 20; ++i) mapper.process({room().frame(i).frame, {}, {}});

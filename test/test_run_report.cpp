@@ -46,17 +46,20 @@ TEST(RunStatistics, CountsEachFrameOnce) {
   statistics.add(frameAt(4, FrameOutcome::no_depth));
   statistics.add(frameAt(5, FrameOutcome::fused));
   statistics.add(frameAt(6, FrameOutcome::forced));
+  ProcessedFrame while_lost = frameAt(7, FrameOutcome::forced);
+  while_lost.status.located = false;
+  statistics.add(while_lost);
   const FrameCounts& f = statistics.frames();
-  EXPECT_EQ(f.read, 7U);
+  EXPECT_EQ(f.read, 8U);
   EXPECT_EQ(f.tracked, 3U) << "the blurred one that passed by force was located";
   EXPECT_EQ(f.blurred, 1U);
   EXPECT_EQ(f.bad, 1U);
-  EXPECT_EQ(f.lost, 2U);
-  EXPECT_DOUBLE_EQ(f.poseShare(), 3.0 / 7);
-  EXPECT_DOUBLE_EQ(f.sharpPoseShare(), 3.0 / 6);
+  EXPECT_EQ(f.lost, 3U);
+  EXPECT_DOUBLE_EQ(f.poseShare(), 3.0 / 8);
+  EXPECT_DOUBLE_EQ(f.sharpPoseShare(), 3.0 / 7);
   EXPECT_EQ(f.by_outcome.at("fused"), 2U);
   EXPECT_EQ(f.by_outcome.at("few_inliers"), 1U);
-  EXPECT_EQ(f.by_state.at("initializing"), 7U);
+  EXPECT_EQ(f.by_state.at("initializing"), 8U);
 }
 
 TEST(RunStatistics, MedianAndTailOfAStage) {

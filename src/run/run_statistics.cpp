@@ -39,8 +39,10 @@ void RunStatistics::add(const ProcessedFrame& frame) {
       ++frames_.blurred;
       addTime("gate", frame.seen.gate_ms);
       return;
-    case FrameOutcome::fused:
     case FrameOutcome::forced:
+      ++(frame.status.located ? frames_.tracked : frames_.lost);
+      break;
+    case FrameOutcome::fused:
       ++frames_.tracked;
       break;
     default:

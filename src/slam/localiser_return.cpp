@@ -52,13 +52,15 @@ void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightnes
 /// less, and an alignment that slid along a wall or a floor looks right to it in every frame.
 void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
                       const MapRenderers& render) {
-  const bool looks_right = location.outcome == FrameOutcome::fused &&
+  // A blurred frame proves nothing, but what was proven goes on through it.
+  const bool is_blurred = location.outcome == FrameOutcome::forced;
+  const bool looks_right = (is_blurred || location.outcome == FrameOutcome::fused) &&
                            (is_place_verified_ || isProof(location.tracking, frame.valid_pixels));
   const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
                                 kProofStep_m, kProofStep_rad);
   // A suggested place is better known than where the camera went from it.
   const bool fits = follows || std::exchange(is_suggested_, false);
-  proofs_ = looks_right ? (fits ? proofs_ + 1 : 1) : 0;
+  proofs_ = looks_right ? (fits ? proofs_ : 0) + (is_blurred ? 0 : 1) : 0;
   is_place_verified_ = is_place_verified_ && looks_right && fits;
   // A place that was verified may be left for a view that hardly tells where it is from.
   const bool is_unsure =

@@ -117,7 +117,7 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   if (s.wantsFragment(input, location)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
   s.question.reset();
-  if (location.outcome == FrameOutcome::forced) {
+  if (location.outcome == FrameOutcome::forced && location.located) {
     s.follow(location, true);
   } else if (location.outcome == FrameOutcome::fused && !s.may_change) {
     s.follow(location, false);
