@@ -123,7 +123,7 @@ TEST(PoseGraph, WithoutNewLoopsNothingHappens) {
   expectUnchanged(graph, before);
 }
 
-TEST(PoseGraph, LoopsThatAreMetHoldAndMoveNothing) {
+TEST(PoseGraph, LoopsThatOnlyConfirmHoldAndMoveNothing) {
   const Poses truth = corridor();
   const PoseGraph before = graphOf(truth);
   PoseGraph graph = before;

@@ -172,7 +172,11 @@ GraphResult PoseGraph::prove(const std::vector<Keyframe>& start,
     Attempt tried = attempt(start, loops);
     result.reason = tried.reason;
     if (tried.reason.empty()) {
-      accept(tried, result);
+      if (isWorthMoving(tried.keyframes)) {
+        accept(tried, result);
+      } else {
+        result.reason = "the new loops only confirm what is there";
+      }
       constraints_.insert(constraints_.end(), loops.begin(), loops.end());
       break;
     }
@@ -184,6 +188,15 @@ GraphResult PoseGraph::prove(const std::vector<Keyframe>& start,
     loops.erase(loops.begin() + (worst - first_new));
   }
   return result;
+}
+
+/// Whether any keyframe would move further than any loop is off.
+bool PoseGraph::isWorthMoving(const std::vector<Keyframe>& corrected) const {
+  for (std::size_t i = 0; i < corrected.size(); ++i) {
+    const Eigen::Isometry3d step = keyframes_[i].T_map_camera.inverse() * corrected[i].T_map_camera;
+    if (!isWithin(step, config_.loop_sigma_m, config_.loop_sigma_rad)) return true;
+  }
+  return false;
 }
 
 void PoseGraph::accept(Attempt& attempt, GraphResult& result) {
@@ -218,22 +231,7 @@ Deformation PoseGraph::deformationTo(const std::vector<Keyframe>& corrected) con
   return Deformation(version_, std::move(nodes));
 }
 
-bool PoseGraph::isMet(const PoseConstraint& loop) const {
-  const auto pose = [&](int i) { return keyframes_[static_cast<std::size_t>(i)].T_map_camera; };
-  const Eigen::Isometry3d T_from_to = pose(loop.from).inverse() * pose(loop.to);
-  return isWithin(loop.T_from_to.inverse() * T_from_to, config_.loop_sigma_m,
-                  config_.loop_sigma_rad);
-}
-
-GraphResult PoseGraph::optimise() {
-  const std::vector<PoseConstraint> loops = std::exchange(waiting_, {});
-  const bool met = std::all_of(loops.begin(), loops.end(), [&](const auto& l) { return isMet(l); });
-  if (loops.empty() || !met) return prove(keyframes_, loops);
-  constraints_.insert(constraints_.end(), loops.begin(), loops.end());
-  GraphResult result;
-  result.reason = "the new loops are met as it is";
-  return result;
-}
+GraphResult PoseGraph::optimise() { return prove(keyframes_, std::exchange(waiting_, {})); }
 
 GraphResult PoseGraph::joinFragment(const PoseConstraint& loop) {
   const PoseConstraint checked = checkedLoop(loop);

@@ -56,9 +56,9 @@ class PoseGraph {
   /// Fits the poses to all constraints (Levenberg-Marquardt on SE(3), Cauchy loss on loops). The
   /// first keyframe of each connected part keeps its pose. While a constraint is missed by more
   /// than max_chi_square, or the new loops bend odometry more than they promise, the new loop that
-  /// fits worst is taken out and the rest tried again from where it began. New loops that are all
-  /// met within the error that any loop has only confirm the poses: they hold from now on, and
-  /// nothing moves.
+  /// fits worst is taken out and the rest tried again from where it began. Where no pose would move
+  /// further than the error that any loop has, the new loops only confirm what is there: they hold
+  /// from now on, and nothing moves until later loops want more.
   GraphResult optimise();
 
   /// Two fragments by a loop between them: the later moves rigidly to where the loop wants it and
@@ -80,13 +80,13 @@ class PoseGraph {
   int fragmentOf(int keyframe) const {
     return keyframes_.at(static_cast<std::size_t>(keyframe)).fragment;
   }
-  bool isMet(const PoseConstraint& loop) const;
   PoseConstraint checkedLoop(const PoseConstraint& loop) const;
   Attempt attempt(const std::vector<Keyframe>& from,
                   const std::vector<PoseConstraint>& loops) const;
   /// What stands against accepting these errors, the last of them of new loops; empty: nothing.
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
+  bool isWorthMoving(const std::vector<Keyframe>& corrected) const;
   void accept(Attempt& attempt, GraphResult& result);
   Deformation deformationTo(const std::vector<Keyframe>& corrected) const;
 
