@@ -14,6 +14,17 @@ namespace {
 // reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
+// Two layers are further apart (m): a correction that moves no keyframe so far makes none.
+constexpr double kLayingOver_m = 0.015;
+
+double largestShiftM(const std::vector<Eigen::Isometry3d>& before,
+                     const std::vector<Eigen::Isometry3d>& after) {
+  double largest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    largest = std::max(largest, (after[i].translation() - before[i].translation()).norm());
+  }
+  return largest;
+}
 
 }  // namespace
 
@@ -84,19 +95,24 @@ void Mapper::State::askForPlace() {
 }
 
 void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
+  const std::vector<Eigen::Isometry3d> before = back_end.keyframePoses();
+  Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
+  bool moves = false;
   for (const Deformation& deformation : back_end.close(loops)) {
     if (deformation.isIdentity()) continue;
-    const Eigen::Isometry3d T_new_old = deformation.at(map.frame());
+    moves = true;
+    T_new_old = deformation.at(map.frame()) * T_new_old;
     deform(map, deformation);
-    removeYoungerLayers(map);
-    localiser.move(T_new_old);
-    const bool is_fused = view.stamp_ns == last_stamp_ns;
-    showFrom(T_new_old * view.T_map_camera, is_fused);
-    keyframes_moved = true;
-    map_at_loss.reset();
-    seen_at.reset();
-    place_is_stale = true;
   }
+  if (!moves) return;
+  if (largestShiftM(before, back_end.keyframePoses()) > kLayingOver_m) removeYoungerLayers(map);
+  localiser.move(T_new_old);
+  const bool is_fused = view.stamp_ns == last_stamp_ns;
+  showFrom(T_new_old * view.T_map_camera, is_fused);
+  keyframes_moved = true;
+  map_at_loss.reset();
+  seen_at.reset();
+  place_is_stale = true;
   fragment = fragmentAt(localiser.lastPose());
 }
 
