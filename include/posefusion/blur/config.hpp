@@ -11,7 +11,7 @@ struct BlurConfig {
   double threshold = 0.0;
   double relative_threshold = 0.2;
   int history_frames = 30;
-  double max_gap_s = 0.1;
+  double max_gap_s = 0.2;
 };
 
 inline void visitFields(BlurConfig& c, FieldVisitor& v) {
