@@ -160,7 +160,7 @@ TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
   LoopAnswer answer;
   LoopConstraint loop{first.id, last.id, first.T_map_camera.inverse() * last.T_map_camera,
                       1e-6 * Matrix6d::Identity()};
-  loop.T_from_to.translation().x() += 0.01;
+  loop.T_from_to.translation().x() += 0.03;  // enough to be worth a correction
   answer.loops.push_back(loop);
   mapper->take(answer);
   ASSERT_EQ(mapper->backEnd().counts().accepted, 1U);

@@ -94,7 +94,8 @@ class BlurGateNodelet : public ChainNodelet {
                            "', expected depth registered to colour");
     }
     const pf::RgbdFrame straight = rectifier_.rectify(frameOf(set));
-    const pf::BlurScore blur = gate_->judge(pf::measureSharpness(straight.color), straight.stamp_ns);
+    const pf::BlurScore blur =
+        gate_->judge(pf::measureSharpness(straight.color), straight.stamp_ns);
     publishScore(header, blur);
     if (!blur.sharp) {
       reject(

@@ -26,8 +26,8 @@ struct MapVote {
 MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background);
 
 /// Which detections are believed to be somebody new: all whom no mask shows (a network of joints
-/// found them), and those a detector is sure of; of the others, part of a body at the border of the picture say, those that
-/// stand before the map where nothing stood.
+/// found them), and those a detector is sure of; of the others, part of a body at the border of the
+/// picture say, those that stand before the map where nothing stood.
 std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
                            const std::vector<Background>& background);
 
