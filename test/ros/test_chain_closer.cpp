@@ -18,6 +18,7 @@ namespace posefusion_ros {
 namespace {
 
 constexpr int kThere = 40;
+constexpr double kSmallError = 0.0005;
 
 /// Keyframes come often, and a loop leads back over few of them.
 pf::Config loopyConfig() {
@@ -26,6 +27,8 @@ pf::Config loopyConfig() {
   config.frame.shrink = 1;
   config.graph.keyframe_distance_m = 0.05;
   config.loop.min_gap_keyframes = 2;
+  config.graph.loop_sigma_m = kSmallError;  // the room is exact: so that loops have to correct
+  config.graph.loop_sigma_rad = kSmallError;
   return config;
 }
 
@@ -33,6 +36,8 @@ void setLoopy(Chain& chain) {
   chain.set("frame/shrink", 1);
   chain.set("graph/keyframe_distance_m", 0.05);
   chain.set("loop/min_gap_keyframes", 2);
+  chain.set("graph/loop_sigma_m", kSmallError);
+  chain.set("graph/loop_sigma_rad", kSmallError);
 }
 
 /// Frame `index` of a camera that moves to and fro in the empty room.
