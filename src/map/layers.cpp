@@ -13,7 +13,6 @@ namespace pf {
 namespace {
 
 // What is closer is noise of one layer.
-constexpr float kLeastLayer_m = 0.015F;
 constexpr float kSameFacing = 0.8F;  // cosine
 constexpr std::size_t kGrain = 4096;
 

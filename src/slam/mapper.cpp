@@ -89,8 +89,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
 /// Where a frame was believed that is not to be fused. `fill`: it stands for the map where there is
 /// none.
 void Mapper::State::follow(const Location& location, bool fill) {
-  map_at_loss.reset();
-  rooms.clear();
+  endSearch();
   showFrom(location.T_map_camera, fill);
   view.stamp_ns = last_stamp_ns;
 }

@@ -14,8 +14,6 @@ namespace {
 // reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
-// Two layers are further apart (m): a correction that moves no keyframe so far makes none.
-constexpr double kLayingOver_m = 0.015;
 
 double largestShiftM(const std::vector<Eigen::Isometry3d>& before,
                      const std::vector<Eigen::Isometry3d>& after) {
@@ -39,12 +37,16 @@ std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& p
   return chosen;
 }
 
+/// The camera was located. In a fragment the search for the fragment's place goes on.
+void Mapper::State::endSearch() {
+  if (fragment != 0) return;
+  map_at_loss.reset();
+  rooms.clear();
+}
+
 /// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
 void Mapper::State::keep(const StaticFrame& input, const Location& location) {
-  if (fragment == 0) {
-    map_at_loss.reset();
-    rooms.clear();
-  }
+  endSearch();
   FusedFrame fused;
   fused.stamp_ns = last_stamp_ns;
   fused.map_frame = map.frame();
@@ -105,7 +107,8 @@ void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
     deform(map, deformation);
   }
   if (!moves) return;
-  if (largestShiftM(before, back_end.keyframePoses()) > kLayingOver_m) removeYoungerLayers(map);
+  // What moves no keyframe so far lays no pass over another.
+  if (largestShiftM(before, back_end.keyframePoses()) > kLeastLayer_m) removeYoungerLayers(map);
   localiser.move(T_new_old);
   const bool is_fused = view.stamp_ns == last_stamp_ns;
   showFrom(T_new_old * view.T_map_camera, is_fused);

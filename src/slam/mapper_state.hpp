@@ -74,6 +74,7 @@ struct Mapper::State {
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void tellCloser();
+  void endSearch();
   void askForPlace();
   std::shared_ptr<const SurfelMap> searchedMap() const;
   void countLostTime(const Location& location, std::int64_t before_ns);

@@ -7,8 +7,9 @@
 
 namespace pf {
 
-/// Layers of one surface are at most so far apart (m): what is farther is a surface of its own.
-constexpr float kMostLayer_m = 0.10F;
+/// Layers of one surface are so far apart (m): what is nearer is one, what is farther is a surface
+/// of its own.
+constexpr float kLeastLayer_m = 0.015F, kMostLayer_m = 0.10F;
 
 /// Once a correction has laid two passes over each other, what is left between them: removes the
 /// stable surfels through which, along their normal, runs the line to the disc of an older stable
