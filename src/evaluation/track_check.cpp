@@ -13,40 +13,14 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kAligned_ns = 5 * kSecond_ns;
-constexpr std::int64_t kMaxTruthDifference_ns = 20'000'000;
 constexpr double kDegrees = 180.0 / M_PI;
-
-/// The pose at a time between two poses: positions on a line, rotations at a constant rate.
-Eigen::Isometry3d between(const StampedPose& a, const StampedPose& b, std::int64_t stamp_ns) {
-  const double part = static_cast<double>(stamp_ns - a.stamp_ns) /
-                      static_cast<double>(std::max<std::int64_t>(1, b.stamp_ns - a.stamp_ns));
-  const Eigen::Isometry3d &A = a.T_world_camera, &B = b.T_world_camera;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = A.linear() * expSo3(part * logSo3(A.linear().transpose() * B.linear()));
-  T.translation() = (1.0 - part) * A.translation() + part * B.translation();
-  return T;
-}
-
-std::optional<Eigen::Isometry3d> truthAt(const Trajectory& truth, std::int64_t stamp_ns) {
-  const auto after =
-      std::lower_bound(truth.begin(), truth.end(), stamp_ns,
-                       [](const StampedPose& p, std::int64_t stamp) { return p.stamp_ns < stamp; });
-  const auto isNear = [&](const StampedPose& p) {
-    return std::llabs(p.stamp_ns - stamp_ns) < kMaxTruthDifference_ns;
-  };
-  const bool has_after = after != truth.end(), has_before = after != truth.begin();
-  const bool near = (has_after && isNear(*after)) || (has_before && isNear(*std::prev(after)));
-  if (!near) return std::nullopt;
-  if (!has_after) return truth.back().T_world_camera;
-  if (!has_before) return truth.front().T_world_camera;
-  return between(*std::prev(after), *after, stamp_ns);
-}
 
 /// The estimated poses with the true ones of just their time.
 std::vector<PosePair> pairWithTruth(const Trajectory& truth, const Trajectory& estimate) {
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : estimate) {
-    if (const auto T = truthAt(truth, pose.stamp_ns)) pairs.push_back({{pose.stamp_ns, *T}, pose});
+    if (const auto T = truePoseAt(truth, pose.stamp_ns))
+      pairs.push_back({{pose.stamp_ns, *T}, pose});
   }
   return pairs;
 }
@@ -97,7 +71,7 @@ std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& e
   std::size_t from = 0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     const std::int64_t stamp_ns = estimate[i].stamp_ns;
-    const auto T = truthAt(truth, stamp_ns);
+    const auto T = truePoseAt(truth, stamp_ns);
     if (!T) continue;
     pairs.push_back({{stamp_ns, *T}, estimate[i]});
     while (from + 1 < pairs.size() && stamp_ns - pairs[from + 1].estimate.stamp_ns >= kSecond_ns) {
@@ -144,7 +118,7 @@ ErrorStatistics heldError(const Trajectory& truth, const Trajectory& estimate,
 
 double lastError(const Trajectory& truth, const Trajectory& estimate, const Alignment& alignment) {
   for (auto pose = estimate.rbegin(); pose != estimate.rend(); ++pose) {
-    const auto T = truthAt(truth, pose->stamp_ns);
+    const auto T = truePoseAt(truth, pose->stamp_ns);
     if (!T) continue;
     return (alignment * Eigen::Vector3d(pose->T_world_camera.translation()) - T->translation())
         .norm();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How good a trajectory, a run, masks, reported covariances, or the surface of a map are.
+// How good a trajectory, a run, masks, reported covariances, the surface of a map, or loops are.
 #include "evaluate.hpp"
 
 #include "tool.hpp"
@@ -7,7 +7,7 @@
 namespace pf {
 namespace {
 
-/// What three of the commands ask: something true, something to be checked.
+/// What most of the commands ask: something true, something to be checked.
 struct PairQuestion {
   std::string truth, checked;
   bool json = false;
@@ -73,6 +73,15 @@ CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
   return command;
 }
 
+CLI::App* addLoopsCommand(CLI::App& app, PairQuestion& question) {
+  auto* command =
+      app.add_subcommand("loops", "the loops that a map was corrected by against true poses");
+  command->add_option("map", question.checked, "map file (map.pfdb)")->required();
+  command->add_option("truth", question.truth, "sequence, or true trajectory")->required();
+  command->add_flag("--json", question.json, "print JSON");
+  return command;
+}
+
 }  // namespace
 }  // namespace pf
 
@@ -83,12 +92,13 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   TrajectoryQuestion trajectory;
   RunQuestion run;
-  PairQuestion masks, covariance, surface;
+  PairQuestion masks, covariance, surface, loops;
   const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
   const CLI::App* run_command = addRunCommand(app, run);
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
   const CLI::App* surface_command = addSurfaceCommand(app, surface);
+  const CLI::App* loops_command = addLoopsCommand(app, loops);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
       evaluateRun(run);
@@ -98,6 +108,8 @@ int main(int argc, char** argv) {
       evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
     } else if (*surface_command) {
       evaluateSurface(surface.checked, surface.truth, surface.json);
+    } else if (*loops_command) {
+      evaluateLoops(loops.checked, loops.truth, loops.json);
     } else if (*estimate) {
       evaluateTrajectory(trajectory);
     } else {

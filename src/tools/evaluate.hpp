@@ -35,5 +35,7 @@ void evaluateMasks(const std::string& truth, const std::string& masks, bool json
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json);
 /// posefusion_evaluate surface RUN_DIR SEQUENCE
 void evaluateSurface(const std::string& run, const std::string& sequence, bool json);
+/// posefusion_evaluate loops MAP_FILE TRUTH
+void evaluateLoops(const std::string& map, const std::string& truth, bool json);
 
 }  // namespace pf

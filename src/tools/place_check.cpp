@@ -18,6 +18,7 @@
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/core/stopwatch.hpp"
+#include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/loop/place_search.hpp"
 #include "posefusion/loop/verify.hpp"
@@ -58,7 +59,7 @@ class Recording {
       const std::int64_t stamp_ns = read->frame.stamp_ns;
       if (first_ns_ < 0) first_ns_ = stamp_ns;
       out.time_s = 1e-9 * static_cast<double>(stamp_ns - first_ns_);
-      const auto pose = poseAt(stamp_ns);
+      const auto pose = truePoseAt(truth_, stamp_ns);
       if (!read->defect.empty() || !pose || !wanted(out.time_s)) continue;
       out.T = *pose;
       const auto path = std::filesystem::path(folder_) / "mask" / (formatStamp(stamp_ns) + ".png");
@@ -72,18 +73,6 @@ class Recording {
   }
 
  private:
-  std::optional<Eigen::Isometry3d> poseAt(std::int64_t stamp_ns) const {
-    const auto at = [](const StampedPose& p, std::int64_t stamp) { return p.stamp_ns < stamp; };
-    const auto after = std::lower_bound(truth_.begin(), truth_.end(), stamp_ns, at);
-    if (after == truth_.end()) return {};
-    if (after == truth_.begin()) return after->T_world_camera;
-    const auto before = after - 1;
-    const double share = static_cast<double>(stamp_ns - before->stamp_ns) /
-                         static_cast<double>(after->stamp_ns - before->stamp_ns);
-    const Eigen::Isometry3d step = before->T_world_camera.inverse() * after->T_world_camera;
-    return orthonormalised(before->T_world_camera * expSe3(share * logSe3(step)));
-  }
-
   std::string folder_;
   std::unique_ptr<FrameSource> source_;
   Trajectory truth_;
