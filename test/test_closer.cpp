@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
@@ -78,8 +79,41 @@ TEST(LoopCloser, ComingBackGivesTrueConstraints) {
   }
   const LoopCounts& c = closer.counts();
   EXPECT_EQ(c.accepted, loops.size());
-  EXPECT_EQ(c.accepted + c.one_way + std::accumulate(c.refused.begin(), c.refused.end(), 0U),
-            c.compared);
+  EXPECT_EQ(c.accepted + c.allRefused(), c.compared);
+}
+
+TEST(LoopCloser, ComparesNoMoreThanIsEnough) {
+  LoopConfig config = quick();
+  config.enough_loops = 1;
+  LoopCloser closer(config, TrackingConfig{});
+  const auto loops = comeBack(closer, Eigen::Isometry3d::Identity());
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_EQ(loops[0].from, 0) << "the nearest is the same picture";
+  EXPECT_EQ(closer.counts().compared, 1U);
+}
+
+TEST(LoopCloser, PicturesThatLookDifferentWaysAreNotJoined) {
+  // One picture, and the same as a camera would see it that is turned about its axis: aligned
+  // without an error, but every surface is at another place of the picture.
+  const double turn_rad = 0.35;
+  const WorkingFrame frame = frameOf(0);
+  LoopCloser closer(quick(), TrackingConfig{});
+  for (int i = 0; i < 3; ++i) closer.addKeyframe(keyframeView(frame, i, poseOf(0), true));
+  Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+  turned.rotate(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
+  KeyframeView view = keyframeView(frame, 3, poseOf(0) * turned, true);
+  const auto rotated = [&](cv::Mat image, int interpolation) {
+    const cv::Point2f centre(static_cast<float>(view.camera.cx),
+                             static_cast<float>(view.camera.cy));
+    const cv::Mat by = cv::getRotationMatrix2D(centre, turn_rad * 180 / M_PI, 1.0);
+    cv::warpAffine(image.clone(), image, by, image.size(), interpolation);
+    return image;
+  };
+  view.intensity = rotated(view.intensity, cv::INTER_LINEAR);
+  view.depth_mm = rotated(view.depth_mm, cv::INTER_NEAREST);
+  closer.addKeyframe(view);
+  EXPECT_TRUE(closer.findLoops().empty());
+  EXPECT_GT(closer.counts().turned, 0U);
 }
 
 TEST(LoopCloser, TheLastKeyframesAreNoLoop) {

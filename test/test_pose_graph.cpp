@@ -139,13 +139,21 @@ TEST(PoseGraph, LoopsThatOnlyConfirmHoldAndMoveNothing) {
   EXPECT_EQ(graph.version(), before.version());
   EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 2);
   EXPECT_EQ(worstDistance(graph, truth), 0);
+  // One that is not met, but too unsure to move anything by more than any loop is off.
+  PoseConstraint unsure = loopOf(truth, 30, 33);
+  unsure.T_from_to = unsure.T_from_to * motion(1.5 * graph.config().loop_sigma_m, 0, 0, 0);
+  unsure.covariance = Matrix6d::Identity() * 0.0025;
+  graph.addLoop(unsure);
+  EXPECT_FALSE(graph.optimise().accepted);
+  EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 3);
+  EXPECT_EQ(worstDistance(graph, truth), 0);
   // With one that is not met, all have their say.
   PoseConstraint loop = loopOf(truth, 0, 58);
   loop.T_from_to = loop.T_from_to * motion(3 * graph.config().loop_sigma_m, 0, 0, 0);
   graph.addLoop(loop);
   graph.addLoop(loopOf(truth, 1, 57));
   EXPECT_TRUE(graph.optimise().accepted);
-  EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 4);
+  EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 5);
 }
 
 TEST(PoseGraph, RefusesAFalseLoopAndUndoesIt) {

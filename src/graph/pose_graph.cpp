@@ -2,14 +2,10 @@
 #include "posefusion/graph/pose_graph.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <numeric>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "graph_checks.hpp"
-#include "pose_solver.hpp"
 
 namespace pf {
 namespace {
@@ -21,55 +17,7 @@ Matrix6d withFloor(const Matrix6d& covariance, double sigma_m, double sigma_rad)
   return sum;
 }
 
-/// For each keyframe the first keyframe of its connected part.
-std::vector<std::size_t> firstOfParts(std::size_t keyframes,
-                                      const std::vector<PoseConstraint>& constraints) {
-  std::vector<std::size_t> first(keyframes);
-  std::iota(first.begin(), first.end(), 0);
-  const auto find = [&](int keyframe) {
-    auto at = static_cast<std::size_t>(keyframe);
-    while (first[at] != at) at = first[at] = first[first[at]];
-    return at;
-  };
-  for (const PoseConstraint& c : constraints) {
-    const std::size_t a = find(c.from), b = find(c.to);
-    first[std::max(a, b)] = std::min(a, b);
-  }
-  for (std::size_t i = 0; i < keyframes; ++i) first[i] = find(static_cast<int>(i));
-  return first;
-}
-
-double chiSquare(const PoseConstraint& c, const std::vector<Keyframe>& keyframes) {
-  return chiSquare(c, keyframes[static_cast<std::size_t>(c.from)].T_map_camera,
-                   keyframes[static_cast<std::size_t>(c.to)].T_map_camera);
-}
-
-std::string missText(const PoseConstraint& c, double chi_square, double most) {
-  char text[160];
-  std::snprintf(text, sizeof(text),
-                "%s %d -> %d is missed by a chi-square of %.1f after optimising, expected %.1f or "
-                "less",
-                c.kind == ConstraintKind::loop ? "loop" : "odometry", c.from, c.to, chi_square,
-                most);
-  return text;
-}
-
-std::string strainText(double strain, double most) {
-  char text[120];
-  std::snprintf(text, sizeof(text),
-                "odometry and loops would be bent by a chi-square of %.1f, expected %.1f or less",
-                strain, most);
-  return text;
-}
-
 }  // namespace
-
-/// The graph with some new loops, optimised.
-struct PoseGraph::Attempt {
-  std::vector<Keyframe> keyframes;
-  std::vector<GraphResult::Error> errors;  ///< of the constraints that hold, then of the new ones
-  std::string reason;                      ///< why it cannot be accepted; empty: it can
-};
 
 PoseGraph::PoseGraph(const GraphConfig& config, std::vector<Keyframe> keyframes,
                      std::vector<PoseConstraint> constraints, int version)
@@ -120,118 +68,6 @@ PoseConstraint PoseGraph::checkedLoop(const PoseConstraint& loop) const {
   throwUnlessUsable(checked);
   return checked;
 }
-
-PoseGraph::Attempt PoseGraph::attempt(const std::vector<Keyframe>& from,
-                                      const std::vector<PoseConstraint>& loops) const {
-  std::vector<PoseConstraint> all = constraints_;
-  all.insert(all.end(), loops.begin(), loops.end());
-  const std::vector<std::size_t> first = firstOfParts(from.size(), all);
-  std::set<std::size_t> touched;
-  for (const PoseConstraint& c : loops) touched.insert(first[static_cast<std::size_t>(c.from)]);
-  std::vector<PoseConstraint> solved;
-  for (const PoseConstraint& c : all) {
-    if (touched.count(first[static_cast<std::size_t>(c.from)]) > 0) solved.push_back(c);
-  }
-  std::vector<bool> fixed(from.size());
-  std::vector<Eigen::Isometry3d> poses;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    fixed[i] = first[i] == i;
-    poses.push_back(from[i].T_map_camera);
-  }
-  Attempt result;
-  result.keyframes = from;
-  if (!solvePoses(config_, solved, fixed, poses)) result.reason = "the solver failed";
-  for (std::size_t i = 0; i < poses.size(); ++i) result.keyframes[i].T_map_camera = poses[i];
-  for (const PoseConstraint& c : all) {
-    result.errors.push_back({c, chiSquare(c, keyframes_), chiSquare(c, result.keyframes)});
-  }
-  if (result.reason.empty()) result.reason = objection(result.errors, loops.size());
-  return result;
-}
-
-std::string PoseGraph::objection(const std::vector<GraphResult::Error>& errors,
-                                 std::size_t new_loops) const {
-  const double most = config_.max_chi_square;
-  const auto worst = std::max_element(
-      errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.after < b.after; });
-  if (!(worst->after <= most)) return missText(worst->constraint, worst->after, most);
-  double strain = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const bool is_new = i + new_loops >= errors.size();
-    strain += errors[i].after - (is_new ? 0 : errors[i].before);
-  }
-  const double bearable = most * static_cast<double>(new_loops);
-  return strain <= bearable ? "" : strainText(strain, bearable);
-}
-
-GraphResult PoseGraph::prove(const std::vector<Keyframe>& start,
-                             std::vector<PoseConstraint> loops) {
-  GraphResult result;
-  result.reason = "there are no new loops";
-  while (!loops.empty()) {
-    Attempt tried = attempt(start, loops);
-    result.reason = tried.reason;
-    if (tried.reason.empty()) {
-      if (isWorthMoving(tried.keyframes)) {
-        accept(tried, result);
-      } else {
-        result.reason = "the new loops only confirm what is there";
-      }
-      constraints_.insert(constraints_.end(), loops.begin(), loops.end());
-      break;
-    }
-    const auto first_new = tried.errors.end() - static_cast<std::ptrdiff_t>(loops.size());
-    const auto worst =
-        std::max_element(first_new, tried.errors.end(),
-                         [](const auto& a, const auto& b) { return a.after < b.after; });
-    result.refused.push_back({worst->constraint, tried.reason});
-    loops.erase(loops.begin() + (worst - first_new));
-  }
-  return result;
-}
-
-/// Whether any keyframe would move further than any loop is off.
-bool PoseGraph::isWorthMoving(const std::vector<Keyframe>& corrected) const {
-  for (std::size_t i = 0; i < corrected.size(); ++i) {
-    const Eigen::Isometry3d step = keyframes_[i].T_map_camera.inverse() * corrected[i].T_map_camera;
-    if (!isWithin(step, config_.loop_sigma_m, config_.loop_sigma_rad)) return true;
-  }
-  return false;
-}
-
-void PoseGraph::accept(Attempt& attempt, GraphResult& result) {
-  result.accepted = true;
-  result.errors = std::move(attempt.errors);
-  ++version_;
-  result.deformation = deformationTo(attempt.keyframes);
-  keyframes_ = std::move(attempt.keyframes);
-}
-
-Deformation PoseGraph::deformationTo(const std::vector<Keyframe>& corrected) const {
-  std::set<std::pair<int, int>> tracked;
-  for (const PoseConstraint& c : constraints_) {
-    if (c.kind == ConstraintKind::odometry) tracked.emplace(c.from, c.to);
-  }
-  std::vector<int> order(keyframes_.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](int i) -> const Keyframe& { return keyframes_[static_cast<std::size_t>(i)]; };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return at(a).map_frame < at(b).map_frame; });
-  std::vector<Deformation::Node> nodes;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Eigen::Isometry3d& before = at(order[k]).T_map_camera;
-    const Eigen::Isometry3d& after = corrected[static_cast<std::size_t>(order[k])].T_map_camera;
-    Deformation::Node node;
-    node.map_frame = at(order[k]).map_frame;
-    if (after.matrix() != before.matrix())
-      node.correction = orthonormalised(after * before.inverse());
-    node.leads_on = k + 1 < order.size() && tracked.count({order[k], order[k + 1]}) > 0;
-    nodes.push_back(node);
-  }
-  return Deformation(version_, std::move(nodes));
-}
-
-GraphResult PoseGraph::optimise() { return prove(keyframes_, std::exchange(waiting_, {})); }
 
 GraphResult PoseGraph::joinFragment(const PoseConstraint& loop) {
   const PoseConstraint checked = checkedLoop(loop);

@@ -2,6 +2,7 @@
 #include "posefusion/loop/closer.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
@@ -10,8 +11,11 @@
 namespace pf {
 namespace {
 
-constexpr double kNearTurn_rad = 0.8;
-constexpr double kMostUnlike = 0.5;  // dissimilarity of ferns that is looked at
+// Where two pictures look different ways a surface is at different places in them, where the sensor
+// is off differently: what joins them so is wrong by far more than its covariance says.
+constexpr double kMostTurn_rad = 0.26;
+constexpr double kNearTurn_rad = 0.4;  // by poses that may have drifted
+constexpr double kMostUnlike = 0.5;    // dissimilarity of ferns that is looked at
 constexpr std::size_t kFernMatches = 2;
 constexpr std::size_t kPlacesLike = 12;  // keyframes that a lost camera's picture is matched with
 // The two directions of a pair must tell the same.
@@ -32,6 +36,10 @@ Features featuresOf(const KeyframeView& view) {
 }
 
 }  // namespace
+
+std::size_t LoopCounts::allRefused() const {
+  return std::accumulate(refused.begin(), refused.end(), one_way + turned);
+}
 
 LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking)
     : config_(config), tracking_(tracking), ferns_(fernConfig(config)) {}
@@ -68,33 +76,29 @@ std::vector<Eigen::Isometry3d> LoopCloser::poses() const {
   return poses;
 }
 
-std::vector<LoopCloser::Guess> LoopCloser::guesses() const {
+std::vector<LoopCloser::Candidate> LoopCloser::candidates() const {
   const auto gap = static_cast<std::size_t>(config_.min_gap_keyframes);
   if (keyframes_.size() <= gap) return {};
   const std::size_t old = keyframes_.size() - gap;
   const Keyframe& last = keyframes_.back();
-  std::vector<Guess> found;
-  for (const FernMatch& match : ferns_.nearest(last.code, ferns_.size())) {
-    if (match.dissimilarity > kMostUnlike || found.size() == kFernMatches) break;
-    for (std::size_t i = 0; i < old; ++i) {
-      if (keyframes_[i].view.id == match.id) found.push_back({i, Eigen::Isometry3d::Identity()});
-    }
-  }
-  std::vector<std::pair<double, std::size_t>> near;
+  std::vector<Candidate> found;
   for (std::size_t i = 0; i < old; ++i) {
     const Eigen::Isometry3d step =
         keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
-    const double far = step.translation().norm() + angleOf(step);
-    if (step.translation().norm() < config_.near_m) near.emplace_back(far, i);
+    const double turn = angleOf(step), shift = step.translation().norm();
+    if (shift < config_.near_m && turn < kNearTurn_rad) found.push_back({i, shift + turn, step});
   }
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(near.size(), static_cast<std::size_t>(config_.feature_pairs)));
-  for (const auto& [far, i] : near) {
-    const FeatureMatch match = matchFeatures(keyframes_[i].features, last.features);
-    if (match.found) found.push_back({i, match.T_first_second});
-    const Eigen::Isometry3d step =
-        keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
-    if (angleOf(step) < kNearTurn_rad) found.push_back({i, step});
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.far < b.far; });
+  found.resize(std::min(found.size(), static_cast<std::size_t>(config_.candidates)));
+  std::size_t alike = 0;
+  for (const FernMatch& match : ferns_.nearest(last.code, ferns_.size())) {
+    if (match.dissimilarity > kMostUnlike || alike == kFernMatches) break;
+    for (std::size_t i = 0; i < old; ++i) {
+      if (keyframes_[i].view.id != match.id) continue;
+      found.push_back({i, 0, Eigen::Isometry3d::Identity()});
+      ++alike;
+    }
   }
   return found;
 }
@@ -117,40 +121,55 @@ std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) 
   return places;
 }
 
-bool LoopCloser::verify(const Guess& guess, const WorkingFrame& to, LoopConstraint& constraint) {
+std::optional<LoopConstraint> LoopCloser::verify(const Candidate& candidate,
+                                                 const WorkingFrame& to) {
+  const Keyframe& older = keyframes_[candidate.index];
+  const WorkingFrame from = workingFrameOf(older.view);
+  if (auto loop = verify(older.view.id, from, to, candidate.T_from_to)) return loop;
+  const FeatureMatch match = matchFeatures(older.features, keyframes_.back().features);
+  if (!match.found) return std::nullopt;
+  return verify(older.view.id, from, to, match.T_first_second);
+}
+
+std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id, const WorkingFrame& from,
+                                                 const WorkingFrame& to,
+                                                 const Eigen::Isometry3d& T_from_to_guess) {
+  if (angleOf(T_from_to_guess) > kNearTurn_rad) return std::nullopt;
   ++counts_.compared;
-  const KeyframeView& view = keyframes_[guess.index].view;
-  const WorkingFrame from = workingFrameOf(view);
   const VerifyLimits limits;
-  const PlaceVerdict forth = alignPair(from, to, guess.T_from_to, tracking_, limits);
+  const PlaceVerdict forth = alignPair(from, to, T_from_to_guess, tracking_, limits);
   if (!forth.accepted()) {
     ++counts_.refused[static_cast<std::size_t>(forth.doubt)];
-    return false;
+    return std::nullopt;
   }
   const Eigen::Isometry3d T = forth.alignment.T_map_camera;
+  if (angleOf(T) > kMostTurn_rad) {
+    ++counts_.turned;
+    return std::nullopt;
+  }
   const PlaceVerdict back = alignPair(to, from, T.inverse(), tracking_, limits);
   const Eigen::Isometry3d circle = T * back.alignment.T_map_camera;
   if (!back.accepted() || !isWithin(circle, kOneWay_m, kOneWay_rad)) {
     ++counts_.one_way;
-    return false;
+    return std::nullopt;
   }
   ++counts_.accepted;
-  constraint = {view.id, keyframes_.back().view.id, T, forth.alignment.covariance};
-  return true;
+  return LoopConstraint{id, keyframes_.back().view.id, T, forth.alignment.covariance};
 }
 
 std::vector<LoopConstraint> LoopCloser::findLoops() {
   std::vector<LoopConstraint> loops;
   if (!config_.enabled || keyframes_.empty()) return loops;
-  const std::vector<Guess> found = guesses();
+  const std::vector<Candidate> found = candidates();
   if (found.empty()) return loops;
   const WorkingFrame to = workingFrameOf(keyframes_.back().view);
-  for (const Guess& guess : found) {
-    const std::int64_t id = keyframes_[guess.index].view.id;
+  for (const Candidate& candidate : found) {
+    if (loops.size() == static_cast<std::size_t>(config_.enough_loops)) break;
+    const std::int64_t id = keyframes_[candidate.index].view.id;
     const bool known = std::any_of(loops.begin(), loops.end(),
                                    [&](const LoopConstraint& loop) { return loop.from == id; });
-    LoopConstraint constraint;
-    if (!known && verify(guess, to, constraint)) loops.push_back(constraint);
+    if (known) continue;
+    if (const auto loop = verify(candidate, to)) loops.push_back(*loop);
   }
   return loops;
 }

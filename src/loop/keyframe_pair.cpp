@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kFullSupport = 30.0F;  // a keyframe stands for itself
 constexpr int kRounds = 2;
+constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
 
 }  // namespace
 
@@ -98,10 +99,12 @@ PlaceVerdict alignPair(const WorkingFrame& from, const WorkingFrame& to,
   PlaceVerdict verdict;
   verdict.alignment.T_map_camera = T_from_to_guess;
   for (int i = 0; i < kRounds; ++i) {
-    TrackingStart start = freeStart(verdict.alignment.T_map_camera);
+    const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
+    TrackingStart start = freeStart(T);
     start.T_map_view.setIdentity();
     start.brightness = verdict.alignment.brightness;
     verdict.alignment = track(to, points, start, tracking);
+    if (isWithin(T.inverse() * verdict.alignment.T_map_camera, kSettled_m, kSettled_rad)) break;
   }
   verdict.agreement = compareViews(to, seenFrom(model, verdict.alignment.T_map_camera));
   verdict.doubt = judgePlace(verdict, T_from_to_guess, limits);

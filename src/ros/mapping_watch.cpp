@@ -47,9 +47,7 @@ void MappingWatch::note(const pf::FrameStatus& status, const pf::Mapper& mapper,
   count("inliers", static_cast<std::size_t>(std::max(0, status.tracking.inliers)));
   count("keyframes", mapper.backEnd().graph().keyframes().size());
   count("loops closed", mapper.backEnd().counts().accepted);
-  count("loops refused",
-        mapper.backEnd().counts().refused + loops.one_way +
-            std::accumulate(loops.refused.begin(), loops.refused.end(), std::size_t{0}));
+  count("loops refused", mapper.backEnd().counts().refused + loops.allRefused());
   count("places searched", loops.searched);
   count("places found", loops.found);
 }

@@ -50,6 +50,7 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
     refused[std::string(name(static_cast<PlaceDoubt>(i)))] = c.refused[i];
   }
   refused["one_way"] = c.one_way;
+  refused["turned"] = c.turned;
   refused["graph"] = corrections.refused;
   return {{"keyframes", c.keyframes},
           {"ferns", c.ferns},

@@ -86,6 +86,7 @@ class PoseGraph {
   /// What stands against accepting these errors, the last of them of new loops; empty: nothing.
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
+  bool isMet(const PoseConstraint& loop) const;
   bool isWorthMoving(const std::vector<Keyframe>& corrected) const;
   void accept(Attempt& attempt, GraphResult& result);
   Deformation deformationTo(const std::vector<Keyframe>& corrected) const;

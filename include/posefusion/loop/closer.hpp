@@ -3,6 +3,7 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "posefusion/loop/config.hpp"
@@ -28,8 +29,11 @@ struct LoopCounts {
   std::size_t accepted = 0;
   std::array<std::size_t, kPlaceDoubts> refused{};  ///< by PlaceDoubt
   std::size_t one_way = 0;                          ///< refused: the two directions do not agree
+  std::size_t turned = 0;                           ///< refused: the pictures look different ways
   std::size_t searched = 0;  ///< frames of a lost camera that were looked for
   std::size_t found = 0;     ///< of them
+
+  std::size_t allRefused() const;
 };
 
 /// Finds pairs of keyframes that see the same place. Candidates come from the ferns, from nearness
@@ -50,7 +54,9 @@ class LoopCloser {
   /// matched with those of the keyframes whose ferns are most alike.
   std::vector<Eigen::Isometry3d> placesLike(const KeyframeView& view) const;
 
-  /// Verified constraints from older keyframes to the last one added; at most one for each.
+  /// Verified constraints from older keyframes to the last one added: at most one for each, and no
+  /// more than are enough. The nearest come first: depth that is off by a few percent spoils a
+  /// constraint by as much of the way between the two.
   std::vector<LoopConstraint> findLoops();
 
   /// Of the keyframes, in the map as last told.
@@ -65,14 +71,19 @@ class LoopCloser {
     Features features;
     FernCode code;
   };
-  /// An older keyframe and where the last one may be in its frame.
-  struct Guess {
+  /// An older keyframe that may see what the last one sees.
+  struct Candidate {
     std::size_t index = 0;
-    Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+    double far = 0;  ///< by the poses, m and rad together
+    Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();  ///< guess
   };
 
-  std::vector<Guess> guesses() const;
-  bool verify(const Guess& guess, const WorkingFrame& to, LoopConstraint& constraint);
+  std::vector<Candidate> candidates() const;
+  /// By the guess and, where that leads nowhere, by features.
+  std::optional<LoopConstraint> verify(const Candidate& candidate, const WorkingFrame& to);
+  std::optional<LoopConstraint> verify(std::int64_t id, const WorkingFrame& from,
+                                       const WorkingFrame& to,
+                                       const Eigen::Isometry3d& T_from_to_guess);
 
   LoopConfig config_;
   TrackingConfig tracking_;

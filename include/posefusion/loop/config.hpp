@@ -14,7 +14,8 @@ struct LoopConfig {
   bool static_view_rule = true;
   int min_gap_keyframes = 10;
   double near_m = 1.5;
-  int feature_pairs = 6;
+  int candidates = 6;
+  int enough_loops = 3;
   int answer_lag_frames = 10;
   double new_fragment_after_s = 4.0;
 };
@@ -29,10 +30,11 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
          "ferns are stored only while nobody is in view (off in the modes elastic and posefusion)");
   v.integer("min_gap_keyframes", c.min_gap_keyframes, 1, 100000,
             "a loop leads back over at least so many keyframes");
-  v.number("near_m", c.near_m, 0.0, 1000.0,
-           "keyframes nearer than this are compared by their poses and features");
-  v.integer("feature_pairs", c.feature_pairs, 0, 1000,
+  v.number("near_m", c.near_m, 0.0, 1000.0, "keyframes nearer than this are compared");
+  v.integer("candidates", c.candidates, 0, 1000,
             "most near keyframes that a keyframe is compared with");
+  v.integer("enough_loops", c.enough_loops, 1, 1000,
+            "a keyframe that has so many loops is compared with no more");
   v.integer("answer_lag_frames", c.answer_lag_frames, 1, 1000,
             "frames between a question to the loop closer and its answer, offline and in lossless "
             "replay");
