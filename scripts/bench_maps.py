@@ -39,6 +39,12 @@ class Maps(Runs):
         self.row(f"{name}, the same, 95 %", 1e3 * found["p95_m"], "mm", 60, digits=1)
         self.row(f"{name}, surfels in two layers of one surface", 100 * found["two_layers"], "%", 2, digits=2)
 
+    def wrong_loops(self, name, sequence, folder, barred=True):
+        """Whether the loops that the map was corrected by are true."""
+        found = self.evaluate("loops", folder / "map.pfdb", sequence)
+        self.row(f"{name}, loops that hold and are wrong", found["wrong"], f"of {found['loops']}",
+                 0 if barred else None, digits=0)
+
     def closer_times(self, name, summary):
         times = summary["stages"]
         self.row(f"{name}, loop closer on the tracking thread, median",
@@ -85,6 +91,7 @@ class Maps(Runs):
         self.row(f"{name}, frames with a pose, of those not blurred",
                  100 * track["coverage"]["share_of_sharp"], "%", bar(97), most=False, digits=2)
         self.row(f"{name}, wrong poses", track["wrong_poses"], "", bar(0), digits=0)
+        self.wrong_loops(name, sequence, folder, barred)
         minutes = summary["median_ms_by_minute"]
         growth = minutes[-1] / minutes[1] if len(minutes) > 2 and minutes[1] > 0 else None
         self.row(f"{name}, a frame of the last minute against the second", growth, "x",

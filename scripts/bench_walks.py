@@ -60,6 +60,7 @@ class Walks(Falls, Maps):
         self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.05, digits=3)
         self.row(f"{name}, error of the last pose", track["last_m"], "m", 0.04, digits=3)
         self.surface(name, sequence, folder)
+        self.wrong_loops(name, sequence, folder)
         self.closer_times(name, summary)
         for count in ("keyframes", "corrections"):
             self.row(f"{name}, loops: {count}", summary["loops"][count], "", digits=0)
@@ -81,6 +82,7 @@ class Walks(Falls, Maps):
         sequence, folder, summary = self.walk_run("fall_short", seed, people)
         track = self.check_track(name, sequence, folder)
         self.row(f"{name}, ATE RMSE, fall included", track["ate_m"]["rmse"], "m", 0.04, digits=3)
+        self.wrong_loops(name, sequence, folder)
         after = self.after_loss(folder)
         posed = [float(row["stamp"]) for row in after if row["has_pose"] == "1"]
         back = posed[0] - float(after[0]["stamp"]) if posed else None
