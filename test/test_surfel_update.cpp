@@ -2,6 +2,8 @@
 // What frames say about surfels: support, violation of free space, duplicates.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "fusion_scene.hpp"
 #include "posefusion/core/error.hpp"
 
@@ -141,6 +143,61 @@ TEST(SurfelUpdate, TheYoungerOfTwoLayersGoes) {
   fuseOften(60, scene(1.5), map);
   EXPECT_EQ(countNear(map, 1.54, 0.01), 0U);
   EXPECT_EQ(countNear(map, 1.5, 0.01), wall);
+}
+
+/// A wall at 4 m. What is measured at 4.1 m is near enough to it, and to what lies at 4.2 m.
+SurfelMap wallAtFourMetres() {
+  SurfelMap map{MapConfig{}};
+  fuseOften(10, scene(4.0), map);
+  return map;
+}
+
+constexpr double kBetween_m = 4.1, kBehind_m = 4.2;
+
+TEST(SurfelUpdate, AnOutlierBehindAWallFindsNoSupport) {
+  SurfelMap map = wallAtFourMetres();
+  const std::size_t wall = map.size();
+  fuseOften(1, scene(kBehind_m), map);
+  ASSERT_EQ(map.size(), 2 * wall) << "too far from the wall to be of it";
+  fuseOften(25, scene(kBetween_m), map);
+  EXPECT_EQ(map.size(), wall);
+  EXPECT_EQ(countNear(map, kBehind_m, 0.05), 0U);
+}
+
+TEST(SurfelUpdate, TheYoungerLayerGoesAlsoWhereBothAgreeWithTheMeasurement) {
+  SurfelMap map = wallAtFourMetres();
+  const std::size_t wall = map.size();
+  Eigen::Isometry3d away = kIdentity;
+  away.translation().x() = 100;
+  fuseOften(100, scene(2.0), map, {}, away);
+  const std::size_t elsewhere = map.size() - wall;
+  fuseOften(10, scene(kBehind_m), map);
+  ASSERT_EQ(map.size(), 2 * wall + elsewhere);
+  FusionOptions probation;
+  probation.may_remove_stable = false;
+  fuseOften(3, scene(kBetween_m), map, probation);
+  EXPECT_EQ(map.size(), 2 * wall + elsewhere) << "whoever may be wrong removes nothing";
+  fuseOften(30, scene(kBetween_m), map);
+  EXPECT_EQ(map.size(), wall + elsewhere);
+  EXPECT_EQ(countNear(map, kBehind_m, 0.05), 0U);
+}
+
+TEST(SurfelUpdate, ALowStepSeenFromAfarKeepsBothItsLevels) {
+  SurfelMap map{MapConfig{}};
+  Fuser fuser;
+  for (int i = 0; i < 150; ++i) {
+    Eigen::Isometry3d T = kIdentity;
+    T.translation().x() = 0.01 * std::sin(0.3 * i);
+    fuser.fuse(scene(4.0, 3.94), T, map);
+  }
+  const auto all = map.collect();
+  for (const auto& [z, least] : {std::pair<float, std::size_t>{3.94F, 1500}, {4.0F, 15000}}) {
+    std::size_t stable = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      stable += std::abs(all.z[i] - z) < 0.01F && all.confidence[i] > 100 ? 1 : 0;
+    }
+    EXPECT_GT(stable, least) << z;
+  }
 }
 
 TEST(SurfelUpdate, AnOldSurfaceBehindAYoungOneStays) {

@@ -130,7 +130,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   });
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      update.contradict(results[k].layers, map.blocks_[ranges[k].block].surfels);
+      update.contradict(results[k], map.blocks_[ranges[k].block].surfels);
     }
   });
   for (std::size_t k = 0; k < ranges.size(); ++k) {

@@ -10,7 +10,7 @@
 namespace pf {
 namespace {
 
-bool isWanted(const WorkingFrame& frame, const std::vector<std::int32_t>& explained, int u, int v) {
+bool isWanted(const WorkingFrame& frame, const std::vector<std::int64_t>& explained, int u, int v) {
   return explained[v * frame.camera.width + u] == kUnexplained &&
          frame.depth_m.at<float>(v, u) > 0 && frame.levels[0].normal_z.at<float>(v, u) < 0;
 }
@@ -42,7 +42,7 @@ void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const Fus
 
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now,
-                          const std::vector<std::int32_t>& explained, SurfelArrays& surfels) {
+                          const std::vector<std::int64_t>& explained, SurfelArrays& surfels) {
   const int rows = frame.camera.height, cols = frame.camera.width;
   std::vector<std::size_t> row_start(rows + 1, 0);
   parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {

@@ -16,6 +16,6 @@ namespace pf {
 /// Reuses the memory of `surfels`; `now` is the number of the frame.
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now,
-                          const std::vector<std::int32_t>& explained, SurfelArrays& surfels);
+                          const std::vector<std::int64_t>& explained, SurfelArrays& surfels);
 
 }  // namespace pf

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "measurement.hpp"
+#include "posefusion/map/layers.hpp"
 
 namespace pf {
 namespace {
@@ -14,6 +15,11 @@ namespace {
 constexpr float kLayer_m = 0.10F;
 constexpr float kLayerTolerances = 3.0F;
 constexpr float kParallelCosine = 0.9F;
+// A far measurement is near enough to both layers, and would keep both. What was made so much
+// earlier was made in another pass; within one, surfels as far apart are an edge.
+constexpr std::int32_t kAnotherPass_frames = 100;
+// Few stable surfels are doubled: those of a block are looked at once in so many frames.
+constexpr int kTurns = 4;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 
@@ -36,6 +42,7 @@ SurfelUpdate::SurfelUpdate(const WorkingFrame& frame, const Eigen::Isometry3d& T
 
 SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays& s) const {
   Result result;
+  result.stable_too = static_cast<int>(range.block) % kTurns == map_.frame() % kTurns;
   ProjectedRange seen;
   project(s, range, projection_, seen);
   const float right = projection_.width - 0.5F, bottom = projection_.height - 0.5F;
@@ -92,7 +99,11 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   // From behind, it is the other side of a thin board that is measured; unless the surfel is seen
   // edge-on, and noise turned it away.
   if (p.facing > 0 && cosine < min_cosine_) return false;
-  explain(p, map_.isStable(s, i) ? s.created[i] : map_.frame());
+  const bool stable = map_.isStable(s, i);
+  explain(p, stable ? s.created[i] : map_.frame());
+  if (!stable || (result.stable_too && s.created[i] >= kAnotherPass_frames)) {
+    result.supported.push_back(supportedAt(s, i, p));
+  }
   merge(s, i, p, measured, n, cosine);
   return true;
 }
@@ -102,10 +113,39 @@ bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
          std::abs(measured - p.z) <= kLayerTolerances * agreement(p.z);
 }
 
-void SurfelUpdate::contradict(const std::vector<Layer>& layers, SurfelArrays& s) const {
-  for (const Layer& layer : layers) {
-    if (evidence_.explained[layer.pixel] < s.created[layer.surfel]) violate(s, layer.surfel);
+SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, std::size_t i,
+                                                  const Place& p) const {
+  const float cosine = p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+  return {static_cast<std::uint32_t>(i),
+          static_cast<std::uint32_t>(p.v * frame_.camera.width + p.u), p.z, std::abs(cosine),
+          std::max(s.radius[i], p.z / projection_.fx)};
+}
+
+void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
+  for (const Layer& layer : result.layers) {
+    const std::int64_t explanation = evidence_.explained[layer.pixel];
+    if (Explanation::made(explanation) < s.created[layer.surfel]) violate(s, layer.surfel);
   }
+  for (const Supported& seen : result.supported) {
+    const std::size_t i = seen.surfel;
+    const bool stable = map_.isStable(s, i);
+    if (stable && !options_.may_remove_stable) continue;
+    if (!isDoubled(seen, s.created[i] - (stable ? kAnotherPass_frames : 1))) continue;
+    // Its support is taken back, and as much of that before.
+    const int taken = 2 * (stable ? kTurns : 1);
+    s.confidence[i] = std::max(0.0F, s.confidence[i] - static_cast<float>(taken));
+    s.violations[i] += taken;
+  }
+}
+
+/// Whether a stable surfel made in frame `before` or earlier agrees with the same measurement, and
+/// is so far from this one along its normal that the two are no one surface.
+bool SurfelUpdate::isDoubled(const Supported& seen, std::int32_t before) const {
+  const std::int64_t older = evidence_.explained[seen.pixel];
+  if (Explanation::made(older) > before) return false;
+  const float sine = std::sqrt(std::max(0.0F, 1.0F - seen.cosine * seen.cosine));
+  const float apart = std::abs(Explanation::depth(older) - seen.z) * seen.cosine;
+  return apart > kLeastLayer_m + seen.beside_m * sine;
 }
 
 void SurfelUpdate::violate(SurfelArrays& s, std::size_t i) const {
@@ -138,12 +178,13 @@ void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
   const int last_u = std::min(frame_.camera.width - 1, static_cast<int>(std::floor(p.fu + reach)));
   const int first_v = std::max(0, static_cast<int>(std::ceil(p.fv - reach)));
   const int last_v = std::min(frame_.camera.height - 1, static_cast<int>(std::floor(p.fv + reach)));
+  const std::int64_t mine = Explanation::of(made, p.z);
   for (int v = first_v; v <= last_v; ++v) {
     for (int u = first_u; u <= last_u; ++u) {
       // Several threads may meet here; whichever comes first, the smallest number stays.
-      std::int32_t* pixel = &evidence_.explained[v * frame_.camera.width + u];
-      std::int32_t old = __atomic_load_n(pixel, __ATOMIC_RELAXED);
-      while (made < old && !__atomic_compare_exchange_n(pixel, &old, made, true, __ATOMIC_RELAXED,
+      std::int64_t* pixel = &evidence_.explained[v * frame_.camera.width + u];
+      std::int64_t old = __atomic_load_n(pixel, __ATOMIC_RELAXED);
+      while (mine < old && !__atomic_compare_exchange_n(pixel, &old, mine, true, __ATOMIC_RELAXED,
                                                         __ATOMIC_RELAXED)) {
       }
     }

@@ -14,16 +14,34 @@
 
 namespace pf {
 
+/// What agrees with the measurement of a pixel: of the oldest stable surfel that does, the nearest.
+/// In one number, so that threads may look for the least.
+class Explanation {
+ public:
+  /// `made`: the frame in which a surfel was made; z: its depth (m).
+  static std::int64_t of(std::int32_t made, float z) {
+    return (static_cast<std::int64_t>(made) << 32) | static_cast<std::int64_t>(z * kSteps_1_m);
+  }
+  static std::int32_t made(std::int64_t explanation) {
+    return static_cast<std::int32_t>(explanation >> 32);
+  }
+  static float depth(std::int64_t explanation) {
+    return static_cast<float>(explanation & 0xFFFFFFFF) / kSteps_1_m;
+  }
+
+ private:
+  static constexpr float kSteps_1_m = 1e4F;
+};
+
 /// Says of a pixel that no surfel agrees with it.
-constexpr std::int32_t kUnexplained = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kUnexplained = std::numeric_limits<std::int64_t>::max();
 
 /// What a frame says about the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
   cv::Mat person_m;  ///< CV_32FC1: depth of a person, 0 = none; may be empty
-  /// Per pixel: the frame in which the oldest stable surfel that agrees with it was made; this
-  /// frame where only unstable ones agree.
-  std::vector<std::int32_t> explained;
+  /// Per pixel an Explanation; one made in this frame where only unstable surfels agree.
+  std::vector<std::int64_t> explained;
 };
 
 /// The update of the surfels of one range from one frame. Threads may share it: each call writes
@@ -38,16 +56,25 @@ class SurfelUpdate {
   struct Layer {
     std::uint32_t surfel, pixel;
   };
+  /// A surfel that the measurement supports, as the camera sees it.
+  struct Supported {
+    std::uint32_t surfel, pixel;
+    float z;         ///< m
+    float cosine;    ///< of its normal with the ray
+    float beside_m;  ///< what agrees with the same pixel may lie so far beside it
+  };
   struct Result {
     std::size_t merged = 0;     ///< surfels that this frame supports
     Eigen::AlignedBox3f moved;  ///< the new places of those
     std::vector<Layer> layers;
+    bool stable_too = false;           ///< whether `supported` has stable surfels
+    std::vector<Supported> supported;  ///< of those that may be doubled
   };
   Result update(const SurfelRange& range, SurfelArrays& surfels) const;
 
   /// To be called after all ranges were updated. Of two layers of one surface, the younger is the
-  /// wrong one: the frame contradicts it.
-  void contradict(const std::vector<Layer>& layers, SurfelArrays& surfels) const;
+  /// wrong one: the frame contradicts it, also where its measurement is near enough to both.
+  void contradict(const Result& result, SurfelArrays& surfels) const;
 
  private:
   /// A surfel in the camera frame.
@@ -63,6 +90,8 @@ class SurfelUpdate {
   void violate(SurfelArrays& s, std::size_t i) const;
   float depthOnRay(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;
+  Supported supportedAt(const SurfelArrays& s, std::size_t i, const Place& p) const;
+  bool isDoubled(const Supported& seen, std::int32_t before) const;
   void merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
              const Eigen::Vector3f& n, float cosine) const;
   void mergeNormal(SurfelArrays& s, std::size_t i, float share, const Eigen::Vector3f& n) const;
