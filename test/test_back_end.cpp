@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "posefusion/core/se3.hpp"
 
 namespace pf {
@@ -42,6 +44,56 @@ TEST(BackEnd, AReturnIsTiedToTheNearestKeyframe) {
   const PoseConstraint& tie = back_end.graph().constraints().back();
   EXPECT_EQ(tie.from, 2);
   EXPECT_EQ(tie.to, 6);
+}
+
+/// A round with a drift of 0.24 m: the camera is lost as it comes home, found at the first
+/// keyframe, and knows by its corners how it moved in between.
+FusedFrame homeAfterARound(BackEnd& back_end) {
+  constexpr double kDrift_m = 0.24;
+  constexpr int kSteps = 20;
+  for (int i = 0; i < kSteps; ++i) {
+    const double part = static_cast<double>(i) / kSteps;
+    const double angle = 2 * M_PI * part;
+    const Eigen::Translation3d place(1.5 * (std::cos(angle) - 1) + part * kDrift_m, 0,
+                                     1.5 * std::sin(angle));
+    back_end.add(fusedAt(i, Eigen::Isometry3d(place)));
+  }
+  FusedFrame home = fusedAt(30, along(0));
+  home.is_return = true;
+  home.carried.T_map_camera = along(kDrift_m);
+  home.carried.covariance = 1e-4 * Matrix6d::Identity();
+  home.carried.is_measured = true;
+  return home;
+}
+
+TEST(BackEnd, AReturnClosesALoopByTheWayThroughTheLoss) {
+  BackEnd back_end{GraphConfig{}};
+  const FusedFrame home = homeAfterARound(back_end);
+  const auto before = back_end.keyframePoses();
+  const int id = back_end.add(home);
+  EXPECT_EQ(back_end.keyframePoses()[19].matrix(), before[19].matrix()) << "it waits";
+  ASSERT_EQ(back_end.close({}).size(), 1U);
+  const Eigen::Isometry3d came = before[19].inverse() * home.carried.T_map_camera;
+  const auto after = back_end.keyframePoses();
+  const Eigen::Isometry3d off = (after[19] * came).inverse() * after[static_cast<std::size_t>(id)];
+  EXPECT_LT(off.translation().norm(), 0.05) << "0.24 m before";
+}
+
+TEST(BackEnd, AWayThatIsNotMeasuredOrLeadsElsewhereClosesNothing) {
+  for (const bool measured : {false, true}) {
+    BackEnd back_end{GraphConfig{}};
+    FusedFrame home = homeAfterARound(back_end);
+    home.carried.is_measured = measured;
+    if (measured) home.carried.T_map_camera = along(6.0);  // nobody walks so far in a loss
+    const auto before = back_end.keyframePoses();
+    back_end.add(home);
+    EXPECT_TRUE(back_end.close({}).empty());
+    const auto after = back_end.keyframePoses();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_EQ(after[i].matrix(), before[i].matrix());
+    }
+    EXPECT_EQ(back_end.counts().refused, measured ? 1U : 0U);
+  }
 }
 
 TEST(BackEnd, PosesFollowTheirKeyframes) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/localiser.hpp"
 
+#include <cmath>
+#include <stdexcept>
+
 #include "mapper_scene.hpp"
+#include "posefusion/core/se3.hpp"
 
 namespace pf {
 namespace {
@@ -29,10 +33,18 @@ class MapperReturnTest : public MapperTest {
     ASSERT_EQ(status_.state, TrackingState::doubtful);
   }
   /// Of the same shape.
-  RgbdFrame anotherPicture() const {
-    RgbdFrame frame = truth_.frame;
-    frame.color = cv::Mat(cv::Scalar::all(255) - truth_.frame.color);  // pixels of its own
+  RgbdFrame anotherPicture() const { return anotherPicture(truth_); }
+  static RgbdFrame anotherPicture(const TrueFrame& from) {
+    RgbdFrame frame = from.frame;
+    frame.color = cv::Mat(cv::Scalar::all(255) - from.frame.color);  // pixels of its own
     return frame;
+  }
+  /// The first frame that the camera took so far from where it was seen last.
+  TrueFrame firstBeyond(double way_m) const {
+    for (int i = 20; i < 60; ++i) {
+      if (errorM(status_, room().frame(i)) > way_m) return room().frame(i);
+    }
+    throw std::logic_error("the camera does not move so far");
   }
   /// The loop closer has seen that the camera is where it is.
   void tellPlace() {
@@ -80,6 +92,16 @@ TEST_F(MapperReturnTest, WithoutAGapTheShapeIsEnough) {
   EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
 }
 
+TEST_F(MapperReturnTest, FarFromWhereItWasSeenLastTheShapeIsNotEnough) {
+  cover(2);
+  const TrueFrame far = firstBeyond(0.16);
+  see(anotherPicture(far));
+  EXPECT_EQ(status_.outcome, FrameOutcome::disagrees) << status_.detail;
+  see(far.frame);
+  EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
+  EXPECT_LT(errorM(status_, far), 0.01);
+}
+
 TEST_F(MapperReturnTest, APlaceThatWasFoundSaysNothingOfTheNextLoss) {
   lose();
   see(truth_.frame);
@@ -98,6 +120,46 @@ TEST_F(MapperReturnTest, APlaceThatWasFoundComesBeforeWhatOnlyLooksRight) {
   for (int k = 0; k < 3; ++k) see(truth_.frame);
   EXPECT_EQ(status_.state, TrackingState::tracking) << "three frames are enough where it was found";
   EXPECT_LT(errorM(status_, truth_), 0.006);
+}
+
+/// A camera in a room of which the map shows nothing any more.
+class LocaliserLossTest : public MapperTest {
+ protected:
+  Location see(int i, const SparseFlow& flow) {
+    const TrueFrame truth = room().frame(i);
+    frame_.assign(truth.frame, cv::Mat(), config().frame);
+    if (i == 0) return localiser_.begin(frame_, truth.frame.stamp_ns, truth.T_map_camera);
+    return localiser_.locate(
+        frame_, truth.frame.stamp_ns, flow, false, nothing_,
+        {[&](const Eigen::Isometry3d& T) {
+           return RenderedModel{points_, T};
+         },
+         [&](const Eigen::Isometry3d&) -> const ModelView& { return nothing_; }});
+  }
+
+  Localiser localiser_{config().tracking};
+  WorkingFrame frame_;
+  ModelView nothing_;
+  ModelPyramid points_;
+};
+
+TEST_F(LocaliserLossTest, TheWayThroughALossIsKnownWhileCornersTellOfIt) {
+  FlowTracker flow;
+  Location location;
+  constexpr int kLast = 24;
+  for (int i = 0; i <= kLast; ++i) location = see(i, flow.advance(room().frame(i).frame));
+  ASSERT_EQ(location.state, TrackingState::lost);
+  EXPECT_TRUE(location.carried.is_measured);
+  const Eigen::Isometry3d truth = room().frame(kLast).T_map_camera;
+  const Eigen::Isometry3d off = truth.inverse() * location.carried.T_map_camera;
+  EXPECT_LT(off.translation().norm(), 0.03);
+  EXPECT_LT(angleOf(off), 0.02);
+  const double sigma_m = std::sqrt(location.carried.covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_LT(off.translation().norm(), 3 * sigma_m) << "the covariance is honest";
+
+  EXPECT_FALSE(see(kLast + 1, {}).carried.is_measured);
+  location = see(kLast + 2, flow.advance(room().frame(kLast + 2).frame));
+  EXPECT_FALSE(location.carried.is_measured) << "one step that nobody knows is enough";
 }
 
 }  // namespace

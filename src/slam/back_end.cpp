@@ -29,10 +29,15 @@ int BackEnd::add(const FusedFrame& frame) {
   keyframe.T_map_camera = frame.T_map_camera;
   keyframe.fragment = fragmentAt(frame.T_map_camera);
   if (graph_.keyframes().empty() || frame.begins_fragment) return graph_.addKeyframe(keyframe);
+  const Keyframe last = graph_.keyframes().back();
   if (frame.is_return) {
-    return graph_.addKeyframe(keyframe, nearest(frame.T_map_camera), frame.covariance);
+    const int id = graph_.addKeyframe(keyframe, nearest(frame.T_map_camera), frame.covariance);
+    if (frame.carried.is_measured && last.fragment == keyframe.fragment) {
+      graph_.addLoop({last.id, id, last.T_map_camera.inverse() * frame.carried.T_map_camera,
+                      frame.carried.covariance, ConstraintKind::loop});
+    }
+    return id;
   }
-  const Keyframe& last = graph_.keyframes().back();
   const Eigen::Isometry3d step = last.T_map_camera.inverse() * frame.T_map_camera;
   const GraphConfig& config = graph_.config();
   if (isWithin(step, config.keyframe_distance_m, config.keyframe_angle_rad)) return -1;

@@ -18,10 +18,14 @@ constexpr double kMaxExtrapolation_s = 0.2;
 constexpr double kMaxReckoning_s = 0.6;
 constexpr int kManyCorners = 80;
 constexpr double kMostCorners = 0.8;  // part of them that agree
+// To close a loop by, which the graph takes for what its covariance says, fewer are enough.
+constexpr int kEnoughCorners = 40;
+constexpr double kHalf = 0.5;
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 constexpr int kProbationFrames = 60;
-// After a gap so long the camera may be where a fall threw it, and one frame is little to go by.
-constexpr double kMaxBlind_s = 0.25;
+// After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
+// it, and one frame is little to go by.
+constexpr double kMaxBlind_s = 0.25, kMaxBlind_m = 0.15;
 
 }  // namespace
 
@@ -55,14 +59,18 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   const PosePrior prior = predict(location.motion, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
+  carry(location.motion);
+  location.carried = carried_;
   Verdict verdict;
   location.tracking = align(frame, prior, location.motion, render.model, verdict);
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
   }
   const double blind_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
+  const Eigen::Vector3d way =
+      location.tracking.T_map_camera.translation() - T_map_located_.translation();
   if (state_ == TrackingState::doubtful && verdict.outcome == FrameOutcome::fused &&
-      blind_s > kMaxBlind_s) {
+      (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m)) {
     verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
   }
   location.outcome = verdict.outcome;
@@ -133,6 +141,14 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
   return best;
 }
 
+void Localiser::carry(const SparseMotion& motion) {
+  const Matrix6d A = adjoint(motion.T_before_after.inverse());
+  carried_.T_map_camera = orthonormalised(carried_.T_map_camera * motion.T_before_after);
+  carried_.covariance = A * carried_.covariance * A.transpose() + motion.covariance;
+  carried_.is_measured = carried_.is_measured && motion.found && motion.inliers >= kEnoughCorners &&
+                         motion.inliers >= kHalf * motion.matches;
+}
+
 void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_s) {
   location.T_map_camera = location.tracking.T_map_camera;
   location.located = true;
@@ -147,6 +163,9 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   previous_.T_map_camera = T_map_located_ = location.T_map_camera;
   previous_.covariance = location.tracking.covariance;
   brightness_ = location.tracking.brightness;
+  carried_.T_map_camera = location.T_map_camera;
+  carried_.covariance.setZero();
+  carried_.is_measured = true;
   trusted_ns_ = seen_ns_ = stamp_ns;
   untrusted_in_a_row_ = reckoned_in_a_row_ = 0;
 }
@@ -184,6 +203,7 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
 void Localiser::move(const Eigen::Isometry3d& T_new_old) {
   previous_.T_map_camera = T_new_old * previous_.T_map_camera;
   T_map_located_ = T_new_old * T_map_located_;
+  carried_.T_map_camera = T_new_old * carried_.T_map_camera;
   landmarks_.move(T_new_old);
 }
 

@@ -53,6 +53,7 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   fused.T_map_camera = location.T_map_camera;
   fused.covariance = location.tracking.covariance;
   fused.is_return = location.is_return;
+  fused.carried = location.carried;
   fused.begins_fragment = fragment != 0 && fragment != back_end.graph().keyframes().back().fragment;
   const int id = back_end.add(fused);
   if (id < 0) return;

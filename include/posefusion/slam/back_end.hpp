@@ -9,6 +9,7 @@
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/graph/pose_graph.hpp"
 #include "posefusion/loop/closer.hpp"
+#include "posefusion/tracking/tracker.hpp"
 
 namespace pf {
 
@@ -20,6 +21,8 @@ struct FusedFrame {
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
   bool is_return = false;        ///< found again: tied to the nearest keyframe, not to the last
   bool begins_fragment = false;  ///< tied to none
+  /// Of a return, where it is measured: the pose had the camera not been lost but carried on.
+  PosePrior carried;
 };
 
 /// The keyframes, the graph that ties them, and the poses that hang on them. A frame's pose is kept
@@ -38,7 +41,9 @@ class BackEnd {
   /// The keyframe that saw the map from about this pose.
   int nearest(const Eigen::Isometry3d& T_map_camera) const;
 
-  /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1.
+  /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1. A camera
+  /// may be lost because drift has laid the place where it arrives over another; having returned
+  /// there, it closes a loop by the way that it came, which waits for the next close().
   int add(const FusedFrame& frame);
 
   /// Keeps the pose of a located frame (fused or not); nothing before the first keyframe.

@@ -39,6 +39,9 @@ struct Location {
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
   SparseMotion motion;
+  /// Where the camera would be by its corners' motion alone since the last fused frame; measured
+  /// where many of them told of every step. Of a return, it tells what the loss has torn apart.
+  PosePrior carried;
   std::string detail;
 };
 
@@ -103,6 +106,7 @@ class Localiser {
   TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
                        const SparseMotion& motion, const ModelRenderer& render,
                        Verdict& verdict) const;
+  void carry(const SparseMotion& motion);
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   /// What else is asked of a frame that tracking found good after a gap of `gap_s`.
@@ -116,6 +120,7 @@ class Localiser {
   TrackingConfig config_;
   TrackingState state_ = TrackingState::initializing;
   Previous previous_;
+  PosePrior carried_;  ///< see Location
   Landmarks landmarks_;
   Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_reckoned_ = Eigen::Isometry3d::Identity();
