@@ -78,7 +78,9 @@ TEST_F(MapperTest, ATurnIntoTheUnknownWithoutASharpFrameIsFollowed) {
     EXPECT_TRUE(status.located);
     EXPECT_LT(errorM(status, truth), 0.03) << "frame " << i;
     if (i == kSharp) mapped = status.surfels;
-    if (forced) EXPECT_EQ(status.surfels, mapped) << "nothing blurred is fused";
+    if (forced) {
+      EXPECT_EQ(status.surfels, mapped) << "nothing blurred is fused";
+    }
   }
 }
 
