@@ -29,7 +29,7 @@ FernConfig fernConfig(const LoopConfig& config) {
   return ferns;
 }
 
-Features featuresOf(const KeyframeView& view) {
+Features featuresIn(const KeyframeView& view) {
   FeatureImage image{view.intensity, cv::Mat(), view.camera};
   view.depth_mm.convertTo(image.depth_m, CV_32F, 1e-3);
   return findFeatures(image);
@@ -42,14 +42,14 @@ std::size_t LoopCounts::allRefused() const {
 }
 
 LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking)
-    : config_(config), tracking_(tracking), ferns_(fernConfig(config)) {}
+    : config_(config), aligner_(tracking), ferns_(fernConfig(config)) {}
 
 void LoopCloser::addKeyframe(const KeyframeView& view) {
   if (!keyframes_.empty() && view.id <= keyframes_.back().view.id) {
     throw InputError("keyframe " + std::to_string(view.id) + ": expected an id above " +
                      std::to_string(keyframes_.back().view.id));
   }
-  keyframes_.push_back({view, featuresOf(view), ferns_.encode(view.thumbnail)});
+  keyframes_.push_back({view, ferns_.encode(view.thumbnail), std::nullopt});
   ++counts_.keyframes;
   if (config_.static_view_rule && !view.nobody_in_view) {
     ++counts_.not_static;
@@ -103,7 +103,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates() const {
   return found;
 }
 
-std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) const {
+std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) {
   std::vector<Eigen::Isometry3d> places;
   if (keyframes_.empty()) return places;
   const FernCode code = ferns_.encode(view.thumbnail);
@@ -113,31 +113,33 @@ std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) 
   }
   std::sort(alike.begin(), alike.end());
   alike.resize(std::min(alike.size(), kPlacesLike));
-  const Features features = featuresOf(view);
+  const Features features = featuresIn(view);
   for (const auto& [dissimilarity, i] : alike) {
-    const FeatureMatch match = matchFeatures(keyframes_[i].features, features);
+    const FeatureMatch match = matchFeatures(featuresOf(keyframes_[i]), features);
     if (match.found) places.push_back(keyframes_[i].view.T_map_camera * match.T_first_second);
   }
   return places;
 }
 
-std::optional<LoopConstraint> LoopCloser::verify(const Candidate& candidate,
-                                                 const WorkingFrame& to) {
-  const Keyframe& older = keyframes_[candidate.index];
-  const WorkingFrame from = workingFrameOf(older.view);
-  if (auto loop = verify(older.view.id, from, to, candidate.T_from_to)) return loop;
-  const FeatureMatch match = matchFeatures(older.features, keyframes_.back().features);
-  if (!match.found) return std::nullopt;
-  return verify(older.view.id, from, to, match.T_first_second);
+const Features& LoopCloser::featuresOf(Keyframe& keyframe) {
+  if (!keyframe.features) keyframe.features = featuresIn(keyframe.view);
+  return *keyframe.features;
 }
 
-std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id, const WorkingFrame& from,
-                                                 const WorkingFrame& to,
+std::optional<LoopConstraint> LoopCloser::verify(const Candidate& candidate) {
+  Keyframe& older = keyframes_[candidate.index];
+  from_.assign(older.view);
+  if (auto loop = verify(older.view.id, candidate.T_from_to)) return loop;
+  const FeatureMatch match = matchFeatures(featuresOf(older), featuresOf(keyframes_.back()));
+  if (!match.found) return std::nullopt;
+  return verify(older.view.id, match.T_first_second);
+}
+
+std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id,
                                                  const Eigen::Isometry3d& T_from_to_guess) {
   if (angleOf(T_from_to_guess) > kNearTurn_rad) return std::nullopt;
   ++counts_.compared;
-  const VerifyLimits limits;
-  const PlaceVerdict forth = alignPair(from, to, T_from_to_guess, tracking_, limits);
+  const PlaceVerdict forth = aligner_.align(from_, to_, T_from_to_guess);
   if (!forth.accepted()) {
     ++counts_.refused[static_cast<std::size_t>(forth.doubt)];
     return std::nullopt;
@@ -147,7 +149,7 @@ std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id, const WorkingF
     ++counts_.turned;
     return std::nullopt;
   }
-  const PlaceVerdict back = alignPair(to, from, T.inverse(), tracking_, limits);
+  const PlaceVerdict back = aligner_.align(to_, from_, T.inverse());
   const Eigen::Isometry3d circle = T * back.alignment.T_map_camera;
   if (!back.accepted() || !isWithin(circle, kOneWay_m, kOneWay_rad)) {
     ++counts_.one_way;
@@ -162,14 +164,14 @@ std::vector<LoopConstraint> LoopCloser::findLoops() {
   if (!config_.enabled || keyframes_.empty()) return loops;
   const std::vector<Candidate> found = candidates();
   if (found.empty()) return loops;
-  const WorkingFrame to = workingFrameOf(keyframes_.back().view);
+  to_.assign(keyframes_.back().view);
   for (const Candidate& candidate : found) {
     if (loops.size() == static_cast<std::size_t>(config_.enough_loops)) break;
     const std::int64_t id = keyframes_[candidate.index].view.id;
     const bool known = std::any_of(loops.begin(), loops.end(),
                                    [&](const LoopConstraint& loop) { return loop.from == id; });
     if (known) continue;
-    if (const auto loop = verify(candidate, to)) loops.push_back(*loop);
+    if (const auto loop = verify(candidate)) loops.push_back(*loop);
   }
   return loops;
 }

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/loop/keyframe_pair.hpp"
 
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/core/se3.hpp"
 
 namespace pf {
 namespace {
 
 constexpr float kFullSupport = 30.0F;  // a keyframe stands for itself
-constexpr int kRounds = 2;
-constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
 
 }  // namespace
 
@@ -29,85 +27,73 @@ KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id,
   return view;
 }
 
-WorkingFrame workingFrameOf(const KeyframeView& view) {
-  RgbdFrame frame;
-  cv::cvtColor(view.intensity, frame.color, cv::COLOR_GRAY2RGB);
-  frame.depth = view.depth_mm;
-  frame.camera = view.camera;
-  FrameConfig whole;
-  whole.shrink = 1;
-  WorkingFrame working;
-  working.assign(frame, cv::Mat(), whole);
-  return working;
-}
-
-ModelView modelViewOf(const WorkingFrame& frame) {
+void KeyframePicture::assign(const KeyframeView& view) {
+  RgbdFrame whole;
+  cv::cvtColor(view.intensity, whole.color, cv::COLOR_GRAY2RGB);
+  whole.depth = view.depth_mm;
+  whole.camera = view.camera;
+  FrameConfig config;
+  config.shrink = 1;
+  frame.assign(whole, cv::Mat(), config);
   const FrameLevel& level = frame.levels[0];
-  ModelView view;
-  view.camera = level.camera;
-  view.depth_m = level.depth_m.clone();
-  view.depth_m.setTo(0, level.normal_z >= 0);
-  view.normal_x = level.normal_x;
-  view.normal_y = level.normal_y;
-  view.normal_z = level.normal_z;
-  view.intensity = level.intensity;
-  view.support = cv::Mat(level.depth_m.size(), CV_32FC1, cv::Scalar(kFullSupport));
-  return view;
+  model.camera = level.camera;
+  level.depth_m.copyTo(model.depth_m);
+  model.depth_m.setTo(0, level.normal_z >= 0);
+  model.normal_x = level.normal_x;
+  model.normal_y = level.normal_y;
+  model.normal_z = level.normal_z;
+  model.intensity = level.intensity;
+  model.support.create(level.depth_m.size(), CV_32FC1);
+  model.support.setTo(kFullSupport);
+  points.assign(model);
 }
 
-ModelView seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera) {
-  ModelView moved;
+void seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera, ModelView& moved) {
   moved.camera = view.camera;
   moved.T_map_camera = view.T_map_camera * T_view_camera;
-  for (cv::Mat* plane : {&moved.depth_m, &moved.normal_x, &moved.normal_y, &moved.normal_z,
-                         &moved.intensity, &moved.support}) {
-    *plane = cv::Mat::zeros(view.depth_m.size(), CV_32FC1);
+  for (cv::Mat* plane :
+       {&moved.depth_m, &moved.normal_x, &moved.normal_y, &moved.normal_z, &moved.intensity}) {
+    plane->create(view.depth_m.size(), CV_32FC1);
   }
-  const Eigen::Isometry3d T = T_view_camera.inverse();
-  for (int v = 0; v < view.depth_m.rows; ++v) {
-    for (int u = 0; u < view.depth_m.cols; ++u) {
-      const float depth = view.depth_m.at<float>(v, u);
-      if (depth <= 0) continue;
-      const Eigen::Vector3d p = T * view.camera.unproject(u, v, depth);
-      if (p.z() <= 0) continue;
-      const Eigen::Vector2d pixel = view.camera.project(p);
-      const int x = static_cast<int>(std::lround(pixel.x()));
-      const int y = static_cast<int>(std::lround(pixel.y()));
-      if (x < 0 || y < 0 || x >= view.depth_m.cols || y >= view.depth_m.rows) continue;
+  moved.depth_m.setTo(0);
+  const RigidMotion motion(T_view_camera.inverse());
+  const auto fx = static_cast<float>(view.camera.fx), fy = static_cast<float>(view.camera.fy);
+  const auto cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy);
+  const int rows = view.depth_m.rows, cols = view.depth_m.cols;
+  for (int v = 0; v < rows; ++v) {
+    const auto* depth = view.depth_m.ptr<float>(v);
+    for (int u = 0; u < cols; ++u) {
+      const float z = depth[u];
+      if (z <= 0) continue;
+      float px, py, pz;
+      motion.point((static_cast<float>(u) - cx) / fx * z, (static_cast<float>(v) - cy) / fy * z, z,
+                   px, py, pz);
+      if (pz <= 0) continue;
+      const float fu = fx * px / pz + cx, fv = fy * py / pz + cy;
+      const bool inside = fu > -0.5F && fv > -0.5F && fu < static_cast<float>(cols) - 0.5F &&
+                          fv < static_cast<float>(rows) - 0.5F;
+      if (!inside) continue;
+      const int x = static_cast<int>(fu + 0.5F), y = static_cast<int>(fv + 0.5F);
       float& nearest = moved.depth_m.at<float>(y, x);
-      if (nearest > 0 && nearest <= p.z()) continue;
-      const Eigen::Vector3d n =
-          T.linear() * Eigen::Vector3d(view.normal_x.at<float>(v, u), view.normal_y.at<float>(v, u),
-                                       view.normal_z.at<float>(v, u));
-      nearest = static_cast<float>(p.z());
-      moved.normal_x.at<float>(y, x) = static_cast<float>(n.x());
-      moved.normal_y.at<float>(y, x) = static_cast<float>(n.y());
-      moved.normal_z.at<float>(y, x) = static_cast<float>(n.z());
+      if (nearest > 0 && nearest <= pz) continue;
+      nearest = pz;
+      motion.direction(view.normal_x.at<float>(v, u), view.normal_y.at<float>(v, u),
+                       view.normal_z.at<float>(v, u), moved.normal_x.at<float>(y, x),
+                       moved.normal_y.at<float>(y, x), moved.normal_z.at<float>(y, x));
       moved.intensity.at<float>(y, x) = view.intensity.at<float>(v, u);
-      moved.support.at<float>(y, x) = view.support.at<float>(v, u);
     }
   }
-  return moved;
 }
 
-PlaceVerdict alignPair(const WorkingFrame& from, const WorkingFrame& to,
-                       const Eigen::Isometry3d& T_from_to_guess, const TrackingConfig& tracking,
-                       const VerifyLimits& limits) {
-  const ModelView model = modelViewOf(from);
-  ModelPyramid points;
-  points.assign(model);
+PlaceVerdict PairAligner::align(const KeyframePicture& from, const KeyframePicture& to,
+                                const Eigen::Isometry3d& T_from_to_guess) {
+  TrackingStart start = freeStart(T_from_to_guess);
+  start.T_map_view.setIdentity();
   PlaceVerdict verdict;
-  verdict.alignment.T_map_camera = T_from_to_guess;
-  for (int i = 0; i < kRounds; ++i) {
-    const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
-    TrackingStart start = freeStart(T);
-    start.T_map_view.setIdentity();
-    start.brightness = verdict.alignment.brightness;
-    verdict.alignment = track(to, points, start, tracking);
-    if (isWithin(T.inverse() * verdict.alignment.T_map_camera, kSettled_m, kSettled_rad)) break;
-  }
-  verdict.agreement = compareViews(to, seenFrom(model, verdict.alignment.T_map_camera));
-  verdict.doubt = judgePlace(verdict, T_from_to_guess, limits);
+  verdict.alignment = track(to.frame, from.points, start, tracking_);
+  seenFrom(from.model, verdict.alignment.T_map_camera, seen_);
+  verdict.agreement = compareViews(to.frame, seen_);
+  verdict.doubt = judgePlace(verdict, T_from_to_guess, limits_);
   return verdict;
 }
 

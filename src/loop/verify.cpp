@@ -47,6 +47,42 @@ double correlationOf(const std::vector<GreySums>& windows) {
   return texture > 0 ? both / texture : 0.0;
 }
 
+/// Pixels, and the sum of the outer products of the normals of those that agree.
+struct Counts {
+  double valid = 0, known = 0, agreeing = 0, through = 0, hidden = 0;
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+};
+
+/// One row; `windows` are those that it crosses.
+void compareRow(const FrameLevel& level, const ModelView& view, int v, GreySums* windows,
+                Counts& counts) {
+  const auto *seen = level.depth_m.ptr<float>(v), *model = view.depth_m.ptr<float>(v);
+  const auto *ax = level.normal_x.ptr<float>(v), *ay = level.normal_y.ptr<float>(v);
+  const auto *az = level.normal_z.ptr<float>(v), *bx = view.normal_x.ptr<float>(v);
+  const auto *by = view.normal_y.ptr<float>(v), *bz = view.normal_z.ptr<float>(v);
+  const auto *grey = level.intensity.ptr<float>(v), *mapped = view.intensity.ptr<float>(v);
+  const auto* still = level.still.ptr<std::uint8_t>(v);
+  Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();
+  for (int u = 0; u < level.depth_m.cols; ++u) {
+    if (seen[u] <= 0) continue;
+    ++counts.valid;
+    if (model[u] <= 0) continue;
+    ++counts.known;
+    const float nz = std::min(-0.2F, bz[u]);
+    const float tolerance = surfaceTolerance(std::max(seen[u], model[u]), kAgreeingSigmas) / -nz;
+    if (seen[u] > model[u] + tolerance) ++counts.through;
+    if (seen[u] < model[u] - tolerance) ++counts.hidden;
+    if (std::abs(seen[u] - model[u]) > tolerance) continue;
+    const float cosine = ax[u] * bx[u] + ay[u] * by[u] + az[u] * bz[u];
+    if (az[u] < 0 && cosine < kMinNormalCosine) continue;
+    ++counts.agreeing;
+    const Eigen::Vector3f n(bx[u], by[u], bz[u]);
+    normals += n * n.transpose();
+    if (still[u] != 0) windows[u / kWindow].add(grey[u], mapped[u]);
+  }
+  counts.normals += normals.cast<double>();
+}
+
 }  // namespace
 
 std::string_view name(PlaceDoubt doubt) {
@@ -61,40 +97,18 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   const int across = (level.depth_m.cols + kWindow - 1) / kWindow;
   const int down = (level.depth_m.rows + kWindow - 1) / kWindow;
   std::vector<GreySums> windows(static_cast<std::size_t>(across * down));
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-  double valid = 0, known = 0, agreeing = 0, through = 0, hidden = 0;
+  Counts counts;
   for (int v = 0; v < level.depth_m.rows; ++v) {
-    for (int u = 0; u < level.depth_m.cols; ++u) {
-      const float seen = level.depth_m.at<float>(v, u), model = view.depth_m.at<float>(v, u);
-      if (seen <= 0) continue;
-      ++valid;
-      if (model <= 0) continue;
-      ++known;
-      const float nz = std::min(-0.2F, view.normal_z.at<float>(v, u));
-      const float tolerance = surfaceTolerance(std::max(seen, model), kAgreeingSigmas) / -nz;
-      if (seen > model + tolerance) ++through;
-      if (seen < model - tolerance) ++hidden;
-      if (std::abs(seen - model) > tolerance) continue;
-      const float cosine = level.normal_x.at<float>(v, u) * view.normal_x.at<float>(v, u) +
-                           level.normal_y.at<float>(v, u) * view.normal_y.at<float>(v, u) +
-                           level.normal_z.at<float>(v, u) * view.normal_z.at<float>(v, u);
-      if (level.normal_z.at<float>(v, u) < 0 && cosine < kMinNormalCosine) continue;
-      ++agreeing;
-      const Eigen::Vector3d n(view.normal_x.at<float>(v, u), view.normal_y.at<float>(v, u),
-                              view.normal_z.at<float>(v, u));
-      normals += n * n.transpose();
-      if (level.still.at<std::uint8_t>(v, u) == 0) continue;
-      windows[static_cast<std::size_t>(v / kWindow * across + u / kWindow)].add(
-          level.intensity.at<float>(v, u), view.intensity.at<float>(v, u));
-    }
+    compareRow(level, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
   }
   PlaceAgreement result;
-  result.overlap = known / std::max(1.0, valid);
-  result.agreeing = agreeing / std::max(1.0, known);
-  result.seen_through = through / std::max(1.0, known);
-  result.hidden = hidden / std::max(1.0, known);
+  result.overlap = counts.known / std::max(1.0, counts.valid);
+  result.agreeing = counts.agreeing / std::max(1.0, counts.known);
+  result.seen_through = counts.through / std::max(1.0, counts.known);
+  result.hidden = counts.hidden / std::max(1.0, counts.known);
   result.correlation = correlationOf(windows);
-  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals / std::max(1.0, agreeing))
+  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(counts.normals /
+                                                                 std::max(1.0, counts.agreeing))
                       .eigenvalues()[0];
   return result;
 }

@@ -52,7 +52,7 @@ class LoopCloser {
 
   /// Where in the map a picture may have been taken (camera poses, not verified): its features
   /// matched with those of the keyframes whose ferns are most alike.
-  std::vector<Eigen::Isometry3d> placesLike(const KeyframeView& view) const;
+  std::vector<Eigen::Isometry3d> placesLike(const KeyframeView& view);
 
   /// Verified constraints from older keyframes to the last one added: at most one for each, and no
   /// more than are enough. The nearest come first: depth that is off by a few percent spoils a
@@ -68,8 +68,8 @@ class LoopCloser {
  private:
   struct Keyframe {
     KeyframeView view;
-    Features features;
     FernCode code;
+    std::optional<Features> features;  ///< found when they are first asked for
   };
   /// An older keyframe that may see what the last one sees.
   struct Candidate {
@@ -79,14 +79,14 @@ class LoopCloser {
   };
 
   std::vector<Candidate> candidates() const;
-  /// By the guess and, where that leads nowhere, by features.
-  std::optional<LoopConstraint> verify(const Candidate& candidate, const WorkingFrame& to);
-  std::optional<LoopConstraint> verify(std::int64_t id, const WorkingFrame& from,
-                                       const WorkingFrame& to,
-                                       const Eigen::Isometry3d& T_from_to_guess);
+  static const Features& featuresOf(Keyframe& keyframe);
+  /// With the last keyframe, by the guess and, where that leads nowhere, by features.
+  std::optional<LoopConstraint> verify(const Candidate& candidate);
+  std::optional<LoopConstraint> verify(std::int64_t id, const Eigen::Isometry3d& T_from_to_guess);
 
   LoopConfig config_;
-  TrackingConfig tracking_;
+  PairAligner aligner_;
+  KeyframePicture from_, to_;  ///< a candidate, and the last keyframe
   std::deque<Keyframe> keyframes_;
   FernDatabase ferns_;
   LoopCounts counts_;

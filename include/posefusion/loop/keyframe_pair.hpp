@@ -22,20 +22,36 @@ struct KeyframeView {
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id,
                           const Eigen::Isometry3d& T_map_camera, bool nobody_in_view);
 
-/// The view as a frame to align.
-WorkingFrame workingFrameOf(const KeyframeView& view);
+/// A keyframe as a frame to align, and as a model to align with. Holds much memory, and reuses it.
+struct KeyframePicture {
+  WorkingFrame frame;
+  ModelView model;      ///< in the frame's own camera frame
+  ModelPyramid points;  ///< of the model
 
-/// A frame as a model to align with, in its own camera frame.
-ModelView modelViewOf(const WorkingFrame& frame);
+  void assign(const KeyframeView& view);
+};
 
-/// What a model view shows from another pose (in the frame of the view's camera), as far as its
-/// pixels reach.
-ModelView seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera);
+/// Depth, normals and grey levels of a model view as seen from another pose (in the frame of the
+/// view's camera), as far as its pixels reach. Reuses the memory of `moved`; where its depth is 0
+/// the other planes tell nothing.
+void seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera, ModelView& moved);
 
-/// Aligns frame `to` with frame `from`, starting from a guess, and judges as PlaceVerifier does.
-/// The pose of the verdict is T_from_to, its covariance the twist's in the camera frame of `to`.
-PlaceVerdict alignPair(const WorkingFrame& from, const WorkingFrame& to,
-                       const Eigen::Isometry3d& T_from_to_guess, const TrackingConfig& tracking,
-                       const VerifyLimits& limits);
+/// Aligns keyframes with each other and judges as PlaceVerifier does. Keeps buffers between calls;
+/// not thread safe.
+class PairAligner {
+ public:
+  explicit PairAligner(const TrackingConfig& tracking, const VerifyLimits& limits = {})
+      : tracking_(tracking), limits_(limits) {}
+
+  /// Starts from a guess. The pose of the verdict is T_from_to, its covariance the twist's in the
+  /// camera frame of `to`.
+  PlaceVerdict align(const KeyframePicture& from, const KeyframePicture& to,
+                     const Eigen::Isometry3d& T_from_to_guess);
+
+ private:
+  TrackingConfig tracking_;
+  VerifyLimits limits_;
+  ModelView seen_;
+};
 
 }  // namespace pf
