@@ -58,10 +58,10 @@ std::string sizeText(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-/// The depth of people at the size of the working frame; empty when there are none.
-void findPeople(const FusionOptions& options, const cv::Size& size, cv::Mat& person_m) {
+/// The depth of the people of a mask at the size of the working frame; empty when there are none.
+void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const cv::Size& size,
+                cv::Mat& person_m) {
   person_m.release();
-  const cv::Mat& mask = options.person_mask;
   if (mask.empty()) return;
   const int factor = mask.cols / size.width;
   if (factor < 1 || mask.cols / factor != size.width || mask.rows / factor != size.height ||
@@ -69,30 +69,33 @@ void findPeople(const FusionOptions& options, const cv::Size& size, cv::Mat& per
     throw InputError("the mask of people is " + sizeText(mask.size()) +
                      ", expected 8 bits a pixel and a multiple of " + sizeText(size));
   }
-  if (options.input_depth_m.size() != mask.size() || options.input_depth_m.type() != CV_32FC1) {
-    throw InputError("the input depth is " + sizeText(options.input_depth_m.size()) +
+  if (input_depth_m.size() != mask.size() || input_depth_m.type() != CV_32FC1) {
+    throw InputError("the input depth is " + sizeText(input_depth_m.size()) +
                      ", expected floats and the size of the mask of people, " +
                      sizeText(mask.size()));
   }
   cv::Mat people_m = cv::Mat::zeros(mask.size(), CV_32FC1);
-  options.input_depth_m.copyTo(people_m, mask);
+  input_depth_m.copyTo(people_m, mask);
   shrinkDepth(people_m, factor, person_m);
 }
 
 /// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
-double reachOf(const cv::Mat& seen_m, const Evidence& evidence) {
-  double seen = 0, person = 0;
-  cv::minMaxLoc(seen_m, nullptr, &seen);
-  if (!evidence.person_m.empty()) cv::minMaxLoc(evidence.person_m, nullptr, &person);
-  const double farthest = std::max(seen, person);
-  return farthest + 2.0 * surfaceTolerance(static_cast<float>(farthest), 5.0F);
+double reachOf(const cv::Mat& seen_m, const cv::Mat& people_m, const cv::Mat& person_m) {
+  double farthest = 0;
+  for (const cv::Mat& depth_m : {seen_m, people_m, person_m}) {
+    double most = 0;
+    if (!depth_m.empty()) cv::minMaxLoc(depth_m, nullptr, &most);
+    farthest = std::max(farthest, most);
+  }
+  const double tolerance = 2.0 * surfaceTolerance(static_cast<float>(farthest), 5.0F);
+  return farthest + std::max<double>(tolerance, people_m.empty() ? 0.0 : NearPeople::kReach_m);
 }
 
 }  // namespace
 
 /// What is kept between calls.
 struct Fuser::Scratch {
-  cv::Mat seen_m;
+  cv::Mat seen_m, people_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
@@ -104,7 +107,10 @@ Fuser::~Fuser() = default;
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
   Scratch& s = *scratch_;
-  findPeople(options, frame.depth_m.size(), s.evidence.person_m);
+  findPeople(options.mask, options.input_depth_m, frame.depth_m.size(), s.people_m);
+  findPeople(options.in_map_mask, options.input_depth_m, frame.depth_m.size(), s.evidence.person_m);
+  s.evidence.near_people.clear();
+  if (!s.people_m.empty()) s.evidence.near_people.assign(s.people_m, frame.camera);
   map.advance();
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);
@@ -119,7 +125,8 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   Scratch& s = *scratch_;
   findFreeSpace(frame, s.seen_m, s.evidence.free_m);
   s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
-  s.visible = visibleBlocks(map, frame.camera, T_map_camera, reachOf(s.seen_m, s.evidence));
+  s.visible = visibleBlocks(map, frame.camera, T_map_camera,
+                            reachOf(s.seen_m, s.people_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);
   const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);
   std::vector<SurfelUpdate::Result> results(ranges.size());

@@ -20,6 +20,8 @@ constexpr float kParallelCosine = 0.9F;
 constexpr std::int32_t kAnotherPass_frames = 100;
 // Few stable surfels are doubled: those of a block are looked at once in so many frames.
 constexpr int kTurns = 4;
+// Who is found now may have been in view, and mapped, for so long.
+constexpr std::int32_t kUnnoticed_frames = 90;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 
@@ -81,6 +83,9 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
     violate(s, i);
     return false;
   }
+  const bool stable = map_.isStable(s, i);
+  const bool may_be_person = evidence_.near_people.has(p.u, p.v, p.z) && !isLongStable(s, i);
+  if (stable && may_be_person) violate(s, i);
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
   const float off = std::abs(measured - p.z);
@@ -99,13 +104,22 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   // From behind, it is the other side of a thin board that is measured; unless the surfel is seen
   // edge-on, and noise turned it away.
   if (p.facing > 0 && cosine < min_cosine_) return false;
-  const bool stable = map_.isStable(s, i);
   explain(p, stable ? s.created[i] : map_.frame());
   if (!stable || (result.stable_too && s.created[i] >= kAnotherPass_frames)) {
     result.supported.push_back(supportedAt(s, i, p));
   }
+  s.seen[i] = map_.frame();
+  if (!may_be_person) {
+    s.violations[i] = std::max(0, s.violations[i] - 1);
+    s.confidence[i] += 1.0F;
+  }
   merge(s, i, p, measured, n, cosine);
   return true;
+}
+
+/// Whether it was known before anybody came whom nobody noticed.
+bool SurfelUpdate::isLongStable(const SurfelArrays& s, std::size_t i) const {
+  return map_.isStable(s, i) && s.created[i] <= map_.frame() - kUnnoticed_frames;
 }
 
 bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
@@ -194,9 +208,6 @@ void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
 /// Running weighted mean of depth along the pixel's ray, normal, colour and radius.
 void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
                          const Eigen::Vector3f& n, float cosine) const {
-  s.seen[i] = map_.frame();
-  s.violations[i] = std::max(0, s.violations[i] - 1);
-  s.confidence[i] += 1.0F;
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
   const float gain = measurementWeight(measured);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "near_people.hpp"
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/frame/working_frame.hpp"
 #include "posefusion/map/fusion.hpp"
@@ -39,7 +40,8 @@ constexpr std::int64_t kUnexplained = std::numeric_limits<std::int64_t>::max();
 /// What a frame says about the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
-  cv::Mat person_m;  ///< CV_32FC1: depth of a person, 0 = none; may be empty
+  cv::Mat person_m;  ///< CV_32FC1: depth of a person whom the map has, 0 = none; may be empty
+  NearPeople near_people;  ///< around everybody in view
   /// Per pixel an Explanation; one made in this frame where only unstable surfels agree.
   std::vector<std::int64_t> explained;
 };
@@ -87,6 +89,7 @@ class SurfelUpdate {
   };
   bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
   bool isLayer(const Place& p, float measured, float cosine) const;
+  bool isLongStable(const SurfelArrays& s, std::size_t i) const;
   void violate(SurfelArrays& s, std::size_t i) const;
   float depthOnRay(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;

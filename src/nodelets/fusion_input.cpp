@@ -44,10 +44,8 @@ pf::StaticFrame toStaticFrame(const FusionInput::Set& set) {
   const cv::Mat people = cv_bridge::toCvShare(mask)->image;
   if (cv::countNonZero(people) > 0) input.mask = people;
   const cv::Mat people_in_map = cv_bridge::toCvShare(in_map)->image;
-  if (cv::countNonZero(people_in_map) > 0) {
-    input.in_map_mask = people_in_map;
-    input.input_depth = toDepth(input_depth);
-  }
+  if (cv::countNonZero(people_in_map) > 0) input.in_map_mask = people_in_map;
+  input.input_depth = toDepth(input_depth);
   input.flow = fromMessage(*flow);
   input.forced = blur->forced != 0;
   return input;

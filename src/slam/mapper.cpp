@@ -20,10 +20,13 @@ const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
 std::string Mapper::State::defect(const StaticFrame& still) const {
   const RgbdFrame& input = still.frame;
   std::string text = defectOf(input);
-  if (text.empty() && !still.in_map_mask.empty() &&
-      (still.in_map_mask.type() != CV_8UC1 || still.in_map_mask.size() != input.depth.size() ||
-       still.input_depth.type() != input.depth.type() ||
-       still.input_depth.size() != input.depth.size())) {
+  const auto isLikeDepth = [&](const cv::Mat& image, int type) {
+    return image.type() == type && image.size() == input.depth.size();
+  };
+  const bool has_depth = isLikeDepth(still.input_depth, input.depth.type());
+  if (text.empty() &&
+      !(still.in_map_mask.empty() ? still.input_depth.empty() || has_depth
+                                  : has_depth && isLikeDepth(still.in_map_mask, CV_8UC1))) {
     text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
   }
   if (text.empty() && !view.empty() && input.camera.shrunk(config.frame.shrink) != view.camera) {
@@ -74,8 +77,9 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   options.may_remove_stable = !location.is_recent_return;
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
-  if (!input.in_map_mask.empty()) {
-    options.person_mask = input.in_map_mask;
+  if (!input.input_depth.empty() && !(input.mask.empty() && input.in_map_mask.empty())) {
+    options.mask = input.mask;
+    options.in_map_mask = input.in_map_mask;
     RgbdFrame with_people = input.frame;
     with_people.depth = input.input_depth;
     depthInMetres(with_people, config.frame.min_depth_m, config.frame.max_depth_m,

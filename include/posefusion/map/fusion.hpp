@@ -16,10 +16,14 @@ struct FusionOptions {
   /// False while the pose is on probation: nothing then counts against stable surfels.
   bool may_remove_stable = true;
 
-  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. A surfel seen there at the
-  /// depth of `input_depth_m` was fused from a person by mistake: that counts as a violation.
-  cv::Mat person_mask;
-  /// CV_32FC1 (m, 0 = none), size of the mask: the depth before people were taken out.
+  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What is mapped close to people
+  /// may be a part of them that the mask misses, or what was mapped of them before they were found:
+  /// it does not become stable there, and if it did so not long ago, that counts as a violation.
+  cv::Mat mask;
+  /// Like `mask`: a person whom the map has. A surfel seen there at the depth of `input_depth_m`
+  /// was fused from a person by mistake: that counts as a violation.
+  cv::Mat in_map_mask;
+  /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out.
   cv::Mat input_depth_m;
 
   /// Exposure: grey level of the map = gain * grey level of the frame + offset.

@@ -27,7 +27,8 @@ struct StaticFrame {
 
   /// CV_8UC1, 255 = a surface of the map that is a person's, fused by mistake; may be empty.
   cv::Mat in_map_mask{};
-  /// Where there is such a mask: the depth before people were taken out, type of `frame.depth`.
+  /// The depth before people were taken out, type of `frame.depth`; where there is such a mask, it
+  /// must be given, else it may be empty: what is close to people is then mapped like the rest.
   cv::Mat input_depth{};
 };
 
