@@ -20,8 +20,10 @@ constexpr float kParallelCosine = 0.9F;
 constexpr std::int32_t kAnotherPass_frames = 100;
 // Few stable surfels are doubled: those of a block are looked at once in so many frames.
 constexpr int kTurns = 4;
-// Who is found now may have been in view, and mapped, for so long.
-constexpr std::int32_t kUnnoticed_frames = 90;
+// Who is found now may have been in view, and mapped, for so long. It must be gone before it is
+// older than that.
+constexpr std::int32_t kUnnoticed_frames = 45;
+constexpr int kUnnoticedViolations = 2;  // a frame
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 
@@ -84,8 +86,9 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
     return false;
   }
   const bool stable = map_.isStable(s, i);
-  const bool may_be_person = evidence_.near_people.has(p.u, p.v, p.z) && !isLongStable(s, i);
-  if (stable && may_be_person) violate(s, i);
+  const bool is_young = s.created[i] > map_.frame() - kUnnoticed_frames;
+  const bool may_be_person = is_young && evidence_.near_people.has(p.u, p.v, p.z);
+  if (stable && may_be_person) violate(s, i, kUnnoticedViolations);
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
   const float off = std::abs(measured - p.z);
@@ -115,11 +118,6 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   }
   merge(s, i, p, measured, n, cosine);
   return true;
-}
-
-/// Whether it was known before anybody came whom nobody noticed.
-bool SurfelUpdate::isLongStable(const SurfelArrays& s, std::size_t i) const {
-  return map_.isStable(s, i) && s.created[i] <= map_.frame() - kUnnoticed_frames;
 }
 
 bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
@@ -162,8 +160,8 @@ bool SurfelUpdate::isDoubled(const Supported& seen, std::int32_t before) const {
   return apart > kLeastLayer_m + seen.beside_m * sine;
 }
 
-void SurfelUpdate::violate(SurfelArrays& s, std::size_t i) const {
-  if (options_.may_remove_stable || !map_.isStable(s, i)) ++s.violations[i];
+void SurfelUpdate::violate(SurfelArrays& s, std::size_t i, int times) const {
+  if (options_.may_remove_stable || !map_.isStable(s, i)) s.violations[i] += times;
 }
 
 Eigen::Vector3f SurfelUpdate::normal(int u, int v) const {

@@ -18,7 +18,7 @@ struct FusionOptions {
 
   /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What is mapped close to people
   /// may be a part of them that the mask misses, or what was mapped of them before they were found:
-  /// it does not become stable there, and if it did so not long ago, that counts as a violation.
+  /// for 45 frames nothing becomes stable there, and what did so counts as violated.
   cv::Mat mask;
   /// Like `mask`: a person whom the map has. A surfel seen there at the depth of `input_depth_m`
   /// was fused from a person by mistake: that counts as a violation.
