@@ -157,19 +157,11 @@ std::size_t stableNear(const SurfelMap& map, double z) {
   return count;
 }
 
-TEST(SurfelUpdate, WhatIsCloseToPeopleIsMappedButNotStableBeforeItIsOld) {
-  // The left half of the board is an arm that the mask missed, or something close to somebody.
+TEST(SurfelUpdate, WhatIsSeenCloseToPeopleStays) {
   SurfelMap map{MapConfig{}};
-  const WorkingFrame masked = withoutFound(scene(3.0, 1.5));
-  fuseOften(40, masked, map, foundAt(1.5));
-  EXPECT_GT(countNear(map, 1.5), 700U);
-  EXPECT_EQ(stableNear(map, 1.5), 0U);
-  EXPECT_GT(stableNear(map, 3.0), 10000U) << "the wall is 1.5 m behind";
-  SurfelMap alone = map;
-  fuseOften(10, masked, alone);
-  EXPECT_GT(stableNear(alone, 1.5), 700U) << "nobody is there any more";
-  fuseOften(20, masked, map, foundAt(1.5));
-  EXPECT_GT(stableNear(map, 1.5), 700U) << "nobody holds an arm so still";
+  fuseOften(40, withoutFound(scene(3.0, 1.5)), map, foundAt(1.5));
+  EXPECT_GT(stableNear(map, 1.5), 700U) << "the chair of somebody who sits";
+  map.forEachSurfel([](const SurfelArrays& s, std::size_t i) { ASSERT_EQ(s.violations[i], 0); });
 }
 
 TEST(SurfelUpdate, WhoWasMappedUnnoticedGoesOnceFound) {

@@ -20,8 +20,8 @@ constexpr float kParallelCosine = 0.9F;
 constexpr std::int32_t kAnotherPass_frames = 100;
 // Few stable surfels are doubled: those of a block are looked at once in so many frames.
 constexpr int kTurns = 4;
-// Who is found now may have been in view, and mapped, for so long. It must be gone before it is
-// older than that.
+// Who is found now may have been in view, and mapped, for so long; that must be gone before it is
+// older.
 constexpr std::int32_t kUnnoticed_frames = 45;
 constexpr int kUnnoticedViolations = 2;  // a frame
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
@@ -64,7 +64,10 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
                       static_cast<int>(v + 0.5F),
                       seen.reach[k],
                       seen.facing[k]};
-    if (!updateOne(s, i, place, result)) continue;
+    if (!updateOne(s, i, place, result)) {
+      doubt(s, i, place);
+      continue;
+    }
     ++result.merged;
     result.moved.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
   }
@@ -85,10 +88,6 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
     violate(s, i);
     return false;
   }
-  const bool stable = map_.isStable(s, i);
-  const bool is_young = s.created[i] > map_.frame() - kUnnoticed_frames;
-  const bool may_be_person = is_young && evidence_.near_people.has(p.u, p.v, p.z);
-  if (stable && may_be_person) violate(s, i, kUnnoticedViolations);
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
   const float off = std::abs(measured - p.z);
@@ -107,17 +106,23 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   // From behind, it is the other side of a thin board that is measured; unless the surfel is seen
   // edge-on, and noise turned it away.
   if (p.facing > 0 && cosine < min_cosine_) return false;
+  const bool stable = map_.isStable(s, i);
   explain(p, stable ? s.created[i] : map_.frame());
   if (!stable || (result.stable_too && s.created[i] >= kAnotherPass_frames)) {
     result.supported.push_back(supportedAt(s, i, p));
   }
   s.seen[i] = map_.frame();
-  if (!may_be_person) {
-    s.violations[i] = std::max(0, s.violations[i] - 1);
-    s.confidence[i] += 1.0F;
-  }
+  s.violations[i] = std::max(0, s.violations[i] - 1);
+  s.confidence[i] += 1.0F;
   merge(s, i, p, measured, n, cosine);
   return true;
+}
+
+/// What was made close to somebody not long ago, and is not seen now, may be what was mapped of
+/// them before they were found: it goes also where nothing is seen behind it.
+void SurfelUpdate::doubt(SurfelArrays& s, std::size_t i, const Place& p) const {
+  const bool is_young = s.created[i] > map_.frame() - kUnnoticed_frames;
+  if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) violate(s, i, kUnnoticedViolations);
 }
 
 bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {

@@ -89,6 +89,7 @@ class SurfelUpdate {
   };
   bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
   bool isLayer(const Place& p, float measured, float cosine) const;
+  void doubt(SurfelArrays& s, std::size_t i, const Place& p) const;
   void violate(SurfelArrays& s, std::size_t i, int times = 1) const;
   float depthOnRay(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;

@@ -16,9 +16,9 @@ struct FusionOptions {
   /// False while the pose is on probation: nothing then counts against stable surfels.
   bool may_remove_stable = true;
 
-  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What is mapped close to people
-  /// may be a part of them that the mask misses, or what was mapped of them before they were found:
-  /// for 45 frames nothing becomes stable there, and what did so counts as violated.
+  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What was mapped close to
+  /// people less than 45 frames ago, and is not seen in this frame, may be what was mapped of them
+  /// before they were found: that counts as two violations.
   cv::Mat mask;
   /// Like `mask`: a person whom the map has. A surfel seen there at the depth of `input_depth_m`
   /// was fused from a person by mistake: that counts as a violation.
