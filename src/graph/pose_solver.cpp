@@ -14,7 +14,7 @@ using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 /// A correction shorter than this (m and rad together) is what the solver leaves undone: the pose
 /// stays as it was, to the bit.
-constexpr double kNothing = 1e-7;
+constexpr double kNothing = 1e-5;
 
 /// Whitened error of one constraint. The poses are T * exp(increment): plain vectors, so that
 /// neither of Ceres' two ways to describe SE(3), old and new, is needed.
@@ -54,7 +54,7 @@ ceres::Solver::Options optionsOf(const GraphConfig& config) {
   options.max_num_iterations = config.max_iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
-  options.function_tolerance = 1e-14;
+  options.function_tolerance = 1e-8;  // beyond it poses move by hundredths of a millimetre
   options.parameter_tolerance = 1e-12;
   // Eigen's own: other libraries may add up in the order of their threads.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
