@@ -82,6 +82,23 @@ TEST(LoopThread, ALostCameraIsFoundElsewhere) {
             0.02);
 }
 
+TEST(LoopThread, AnsweredQuestionsAreForgotten) {
+  // A session has thousands; those for a place hold a copy of the map each.
+  Config config;
+  config.frame.shrink = 1;
+  Mapper mapper(config);
+  LoopThread loops(config.loop, config.tracking, AnswerTime::after_lag);
+  for (int i = 0; i < kMapped; ++i) {
+    mapper.process({room().frame(i).frame, cv::Mat(), {}});
+    loops.serve(mapper);
+  }
+  loops.finish(mapper);
+  ASSERT_GT(mapper.keyframeViews().size(), 1U);
+  for (const KeyframeView& view : mapper.keyframeViews()) {
+    EXPECT_EQ(view.intensity.u->refcount, 2) << "the mapper's and the closer's, not a question's";
+  }
+}
+
 TEST(LoopThread, AnswersDependOnNeitherSpeedNorThreads) {
   const Carried many = carry(AnswerTime::after_lag);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);

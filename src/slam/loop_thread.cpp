@@ -15,10 +15,12 @@ class ThreadResponder : public LoopResponder {
       : worker_(std::make_shared<LoopWorker>(config, tracking)) {}
 
   void ask(LoopQuestion question) override {
-    // Each question waits for the one before: the worker sees them in their order.
-    auto work = [worker = worker_, before = last_, question = std::move(question)] {
-      if (before.valid()) before.wait();
-      return worker->answer(question);
+    // Each question waits for the one before: the worker sees them in their order. A future holds
+    // its work, so that both are let go here: else each would hold all those before.
+    auto work = [worker = worker_, before = last_, question = std::move(question)]() mutable {
+      if (before.valid()) std::exchange(before, {}).wait();
+      const LoopQuestion mine = std::move(question);
+      return worker->answer(mine);
     };
     last_ = std::async(std::launch::async, std::move(work)).share();
     answers_.push_back(last_);
