@@ -59,8 +59,9 @@ std::string sizeText(const cv::Size& size) {
 }
 
 /// The depth of the people of a mask at the size of the working frame; empty when there are none.
+/// `full_m`: work memory.
 void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const cv::Size& size,
-                cv::Mat& person_m) {
+                cv::Mat& full_m, cv::Mat& person_m) {
   person_m.release();
   if (mask.empty()) return;
   const int factor = mask.cols / size.width;
@@ -74,9 +75,10 @@ void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const cv::Siz
                      ", expected floats and the size of the mask of people, " +
                      sizeText(mask.size()));
   }
-  cv::Mat people_m = cv::Mat::zeros(mask.size(), CV_32FC1);
-  input_depth_m.copyTo(people_m, mask);
-  shrinkDepth(people_m, factor, person_m);
+  full_m.create(mask.size(), CV_32FC1);
+  full_m.setTo(0);
+  input_depth_m.copyTo(full_m, mask);
+  shrinkDepth(full_m, factor, person_m);
 }
 
 /// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
@@ -95,7 +97,7 @@ double reachOf(const cv::Mat& seen_m, const cv::Mat& people_m, const cv::Mat& pe
 
 /// What is kept between calls.
 struct Fuser::Scratch {
-  cv::Mat seen_m, people_m;
+  cv::Mat seen_m, full_m, people_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
@@ -107,8 +109,9 @@ Fuser::~Fuser() = default;
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
   Scratch& s = *scratch_;
-  findPeople(options.mask, options.input_depth_m, frame.depth_m.size(), s.people_m);
-  findPeople(options.in_map_mask, options.input_depth_m, frame.depth_m.size(), s.evidence.person_m);
+  const cv::Size size = frame.depth_m.size();
+  findPeople(options.mask, options.input_depth_m, size, s.full_m, s.people_m);
+  findPeople(options.in_map_mask, options.input_depth_m, size, s.full_m, s.evidence.person_m);
   s.evidence.near_people.clear();
   if (!s.people_m.empty()) s.evidence.near_people.assign(s.people_m, frame.camera);
   map.advance();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 namespace pf {
+
 void NearPeople::Range::extend(const Range& other) {
   nearest_m = std::min(nearest_m, other.nearest_m);
   farthest_m = std::max(farthest_m, other.farthest_m);

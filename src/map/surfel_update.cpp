@@ -111,9 +111,6 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (!stable || (result.stable_too && s.created[i] >= kAnotherPass_frames)) {
     result.supported.push_back(supportedAt(s, i, p));
   }
-  s.seen[i] = map_.frame();
-  s.violations[i] = std::max(0, s.violations[i] - 1);
-  s.confidence[i] += 1.0F;
   merge(s, i, p, measured, n, cosine);
   return true;
 }
@@ -211,6 +208,9 @@ void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
 /// Running weighted mean of depth along the pixel's ray, normal, colour and radius.
 void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
                          const Eigen::Vector3f& n, float cosine) const {
+  s.seen[i] = map_.frame();
+  s.violations[i] = std::max(0, s.violations[i] - 1);
+  s.confidence[i] += 1.0F;
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
   const float gain = measurementWeight(measured);

@@ -23,10 +23,10 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   const auto isLikeDepth = [&](const cv::Mat& image, int type) {
     return image.type() == type && image.size() == input.depth.size();
   };
-  const bool has_depth = isLikeDepth(still.input_depth, input.depth.type());
-  if (text.empty() &&
-      !(still.in_map_mask.empty() ? still.input_depth.empty() || has_depth
-                                  : has_depth && isLikeDepth(still.in_map_mask, CV_8UC1))) {
+  const bool none = still.in_map_mask.empty();
+  const bool depth_fits =
+      isLikeDepth(still.input_depth, input.depth.type()) || (none && still.input_depth.empty());
+  if (text.empty() && !(depth_fits && (none || isLikeDepth(still.in_map_mask, CV_8UC1)))) {
     text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
   }
   if (text.empty() && !view.empty() && input.camera.shrunk(config.frame.shrink) != view.camera) {
@@ -82,8 +82,8 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
     options.in_map_mask = input.in_map_mask;
     RgbdFrame with_people = input.frame;
     with_people.depth = input.input_depth;
-    depthInMetres(with_people, config.frame.min_depth_m, config.frame.max_depth_m,
-                  options.input_depth_m);
+    depthInMetres(with_people, config.frame.min_depth_m, config.frame.max_depth_m, input_depth_m);
+    options.input_depth_m = input_depth_m;
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
   showFrom(location.T_map_camera, true);

@@ -39,6 +39,7 @@ struct Mapper::State {
   Localiser localiser;
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
   WorkingFrame frame;
+  cv::Mat input_depth_m;      ///< of the frame, before people were taken out
   ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
   ModelPyramid model, model_elsewhere;
   const ModelView nothing;
