@@ -18,16 +18,18 @@ constexpr int kMapped = 60, kCovered = 20, kLookedAbout = 6;
 
 const SimulatedSequence& room() { return exactBox<kMapped>(); }
 
-/// Maps a room, covers the camera for long, and uncovers it elsewhere.
+/// Maps a room, covers the camera for long, and uncovers it elsewhere: all of its view, or that
+/// part of the columns.
 struct Carried {
-  explicit Carried(const Config& config, bool with_closer) : mapper_(config) {
+  explicit Carried(const Config& config, bool with_closer, double uncovered = 1.0)
+      : mapper_(config) {
     if (with_closer) loops_.emplace(config.loop, config.tracking, AnswerTime::after_lag);
     for (int i = 0; i < kMapped / 2; ++i) see(i);
     surfels_ = stableAtHome();
-    for (int i = 0; i < kCovered; ++i) see(kMapped / 2, true);
+    for (int i = 0; i < kCovered; ++i) see(kMapped / 2, 0);
     EXPECT_EQ(status_.outcome, FrameOutcome::no_depth);
     EXPECT_EQ(status_.fragment, 0) << "not without anything to see";
-    for (int i = 0; i < kLookedAbout; ++i) see(kMapped - 1);
+    for (int i = 0; i < kLookedAbout; ++i) see(kMapped - 1, uncovered);
   }
 
   static Config config() {
@@ -38,11 +40,12 @@ struct Carried {
     return c;
   }
 
-  const FrameStatus& see(int index, bool covered = false) {
+  const FrameStatus& see(int index, double uncovered = 1.0) {
     StaticFrame input;
     input.frame = room().frame(index).frame;
     input.frame.stamp_ns = stamp_ns_ += 33333333;
-    if (covered) input.frame.depth.setTo(0);
+    const int columns = static_cast<int>(uncovered * input.frame.depth.cols);
+    input.frame.depth.colRange(columns, input.frame.depth.cols).setTo(0);
     status_ = mapper_.process(input);
     tracked_ += status_.state == TrackingState::tracking ? 1U : 0U;
     if (loops_) loops_->serve(mapper_);
@@ -96,10 +99,18 @@ TEST(Fragments, NoneIsBegunWhereThatIsOff) {
   }
 }
 
+TEST(Fragments, NoneIsBegunByACameraThatIsNearlyCovered) {
+  Carried run(Carried::config(), false, 0.15);
+  EXPECT_NE(run.status_.outcome, FrameOutcome::no_depth);
+  EXPECT_EQ(run.status_.state, TrackingState::lost);
+  EXPECT_EQ(run.status_.fragment, 0);
+  EXPECT_EQ(run.mapper_.map().stableCount(), run.surfels_);
+}
+
 TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
   Carried run(Carried::config(), false);
   for (int i = kMapped - 1; i > 40; --i) run.see(i);
-  for (int i = 0; i < kCovered; ++i) run.see(40, true);
+  for (int i = 0; i < kCovered; ++i) run.see(40, 0);
   ASSERT_EQ(run.status_.state, TrackingState::lost);
   for (int i = 0; i < 15; ++i) run.see(40);
   ASSERT_EQ(run.status_.state, TrackingState::tracking);

@@ -117,7 +117,7 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   s.frame.assign(input.frame, input.mask, s.config.frame);
   Location location = s.locate(input);
   s.countLostTime(location, before_ns);
-  if (s.wantsFragment(input, location)) location = s.beginFragment();
+  if (s.wantsFragment(input)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
   s.question.reset();
   if (location.outcome == FrameOutcome::forced && location.located) {
@@ -225,7 +225,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.next_room = 0;
   s.map_at_loss.reset();
   s.fragment = s.last_fragment = s.frames_to_place = 0;
-  s.lost_s = 0;
+  s.lost_s.reset();
   s.at_question = {};
   s.seen_at.reset();
 }

@@ -9,28 +9,36 @@ namespace {
 
 // However long nothing came: it is frames that say that the camera does not know the place.
 constexpr double kMostElapsed_s = 0.5;
+// Where people or a hand leave less of the view than this, the camera is covered: the place is not
+// one that nobody knows, and a piece of map would be made of scraps.
+constexpr double kOpenView = 0.25;
 constexpr int kFramesToPlace = 15;  // between two questions where the fragment lies
 // Two answers in a row that place the fragment alike are believed.
 constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
 
 }  // namespace
 
+bool Mapper::State::isViewOpen() const {
+  return frame.valid_pixels >= kOpenView * static_cast<double>(frame.depth_m.total());
+}
+
 /// `before_ns`: stamp of the frame before; kBeforeAll: there was none.
 void Mapper::State::countLostTime(const Location& location, std::int64_t before_ns) {
-  const bool lost = location.state == TrackingState::lost;
-  if (lost && lost_s == 0 && fragment != 0) map_at_loss.reset();  // the fragment belongs into it
-  if (!lost) lost_s = 0;
-  // A covered camera is not in a place that nobody knows.
-  if (lost && before_ns != kBeforeAll && location.outcome != FrameOutcome::no_depth) {
-    lost_s += std::min(1e-9 * static_cast<double>(last_stamp_ns - before_ns), kMostElapsed_s);
+  if (location.state != TrackingState::lost) return lost_s.reset();
+  if (!lost_s) {
+    lost_s = 0.0;
+    if (fragment != 0) map_at_loss.reset();  // the fragment belongs into it
+  }
+  if (before_ns != kBeforeAll && isViewOpen()) {
+    *lost_s += std::min(1e-9 * static_cast<double>(last_stamp_ns - before_ns), kMostElapsed_s);
   }
 }
 
 /// Lost for long, and no place to come back to is being proven.
-bool Mapper::State::wantsFragment(const StaticFrame& input, const Location& location) const {
+bool Mapper::State::wantsFragment(const StaticFrame& input) const {
   const double after_s = config.loop.new_fragment_after_s;
   return config.loop.enabled && after_s > 0 && lost_s >= after_s && may_change && !input.forced &&
-         location.outcome != FrameOutcome::no_depth && !localiser.isProving();
+         isViewOpen() && !localiser.isProving();
 }
 
 /// The frame begins a piece of the map of its own, far from all others.
@@ -38,7 +46,7 @@ Location Mapper::State::beginFragment() {
   if (!map_at_loss) map_at_loss = searchedMap();
   rooms = spreadOut(back_end.keyframePoses());
   fragment = ++last_fragment;
-  lost_s = 0;
+  lost_s.reset();
   seen_at.reset();
   place_is_stale = true;  // what was asked was asked of a lost camera
   Eigen::Isometry3d T_map_camera = localiser.reckonedPose();

@@ -59,11 +59,11 @@ struct Mapper::State {
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
   bool place_is_asked = false, place_is_stale = false;
   // Of a piece of the map whose place is not known.
-  int fragment = 0;          ///< that the camera is in
-  int last_fragment = 0;     ///< number of the last one begun
-  double lost_s = 0;         ///< with something to see, since the last frame that was believed
-  int frames_to_place = 0;   ///< until the next question where the fragment is
-  RelativePose at_question;  ///< of the frame that was asked about
+  int fragment = 0;                      ///< that the camera is in
+  int last_fragment = 0;                 ///< number of the last one begun
+  std::optional<double> lost_s;          ///< while lost: with an open view
+  int frames_to_place = 0;               ///< until the next question where the fragment is
+  RelativePose at_question;              ///< of the frame that was asked about
   std::optional<FragmentPlace> seen_at;  ///< told once, not yet twice
 
   std::string defect(const StaticFrame& input) const;
@@ -79,7 +79,8 @@ struct Mapper::State {
   void askForPlace();
   std::shared_ptr<const SurfelMap> searchedMap() const;
   void countLostTime(const Location& location, std::int64_t before_ns);
-  bool wantsFragment(const StaticFrame& input, const Location& location) const;
+  bool isViewOpen() const;
+  bool wantsFragment(const StaticFrame& input) const;
   Location beginFragment();
   void askForFragment();
   void placeFragment(const TrackingResult& alignment);
