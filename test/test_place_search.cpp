@@ -189,6 +189,20 @@ TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
   }
 }
 
+TEST(VerifyPlace, ATruePlaceIsNotBelievedThroughAGap) {
+  TrueFrame truth = room().sequence.frame(8);
+  PlaceVerifier verifier{TrackingConfig{}};
+  for (const double open : {0.8, 0.12}) {
+    const int covered = static_cast<int>((1.0 - open) * truth.frame.depth.cols);
+    truth.frame.depth.colRange(0, covered).setTo(0);
+    WorkingFrame frame;
+    frame.assign(truth.frame, cv::Mat(), FrameConfig{});
+    const PlaceVerdict verdict = verifier.verify(room().map, frame, truth.T_map_camera);
+    EXPECT_EQ(verdict.accepted(), open > 0.5) << name(verdict.doubt);
+    EXPECT_EQ(verdict.doubt == PlaceDoubt::covered, open < 0.5) << name(verdict.doubt);
+  }
+}
+
 TEST(VerifyPlace, NoWrongPlaceIsAccepted) {
   const WorkingFrame frame = room().frame(8);
   const Eigen::Isometry3d truth = room().sequence.pose(8);

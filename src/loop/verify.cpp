@@ -87,8 +87,8 @@ void compareRow(const FrameLevel& level, const ModelView& view, int v, GreySums*
 
 std::string_view name(PlaceDoubt doubt) {
   constexpr std::array<std::string_view, kPlaceDoubts> kNames = {
-      "none",      "little_overlap", "not_converged", "degenerate", "moved_away",
-      "disagrees", "seen_through",   "other_picture", "ambiguous"};
+      "none",       "covered",   "little_overlap", "not_converged", "degenerate",
+      "moved_away", "disagrees", "seen_through",   "other_picture", "ambiguous"};
   return kNames.at(static_cast<std::size_t>(doubt));
 }
 
@@ -102,6 +102,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
     compareRow(level, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
   }
   PlaceAgreement result;
+  result.view = counts.valid / static_cast<double>(level.depth_m.total());
   result.overlap = counts.known / std::max(1.0, counts.valid);
   result.agreeing = counts.agreeing / std::max(1.0, counts.known);
   result.seen_through = counts.through / std::max(1.0, counts.known);
@@ -129,6 +130,7 @@ double positionSigma(const TrackingResult& alignment) {
 PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
                       const VerifyLimits& limits) {
   const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
+  if (v.agreement.view < limits.min_view) return PlaceDoubt::covered;
   if (v.agreement.overlap < limits.min_overlap) return PlaceDoubt::little_overlap;
   if (!v.alignment.converged) return PlaceDoubt::not_converged;
   // Somebody or something new before the map does not speak against the place, up to a point.

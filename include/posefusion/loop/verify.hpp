@@ -15,6 +15,7 @@ namespace pf {
 /// Why a place is not believed.
 enum class PlaceDoubt {
   none,            ///< believed
+  covered,         ///< people or a hand leave too little of the view
   little_overlap,  ///< too little of the frame is in the map
   not_converged,   ///< the alignment did not settle
   degenerate,      ///< the images leave directions free, or hardly determine them
@@ -25,7 +26,7 @@ enum class PlaceDoubt {
   ambiguous        ///< another place fits as well
 };
 
-constexpr std::size_t kPlaceDoubts = 9;
+constexpr std::size_t kPlaceDoubts = 10;
 std::string_view name(PlaceDoubt doubt);
 
 /// How a frame and the map, seen from one pose, agree.
@@ -38,6 +39,7 @@ struct PlaceAgreement {
   /// How much the normals of what agrees vary: the least eigenvalue of their mean outer product, 0
   /// for one or two walls, 1/3 at most. Where it is small the pose may have slid.
   double spread = 0;
+  double view = 1;  ///< part of the frame's pixels with depth
 };
 
 struct PlaceVerdict {
@@ -52,6 +54,7 @@ struct PlaceVerdict {
 
 /// What is asked of a place that is believed.
 struct VerifyLimits {
+  double min_view = 0.15;  ///< through a gap, a wall slides by as it likes
   double min_overlap = 0.25;
   double min_agreeing = 0.85;  ///< of what is not hidden
   double max_hidden = 0.4;
