@@ -67,8 +67,8 @@ double radiansOff(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 TEST(Levels, UpIsThatOfTheRoom) {
   // The camera of the small room looks a little down: up is not the picture's up.
   const auto frame_levels = placeQuery(room().frame(11));
-  ASSERT_TRUE(frame_levels.up);
-  const Eigen::Vector3d seen = room().sequence.pose(11).linear() * *frame_levels.up;
+  ASSERT_TRUE(frame_levels.floor);
+  const Eigen::Vector3d seen = room().sequence.pose(11).linear() * frame_levels.floor->up;
   EXPECT_GT(seen.dot(room().up), std::cos(0.035));
 }
 
@@ -111,6 +111,38 @@ TEST(PlaceSearch, FindsThePlaceFromBelow) {
   ASSERT_FALSE(found.empty());
   EXPECT_LT(metresOff(found[0].T_map_camera, truth), 0.25);
   EXPECT_LT(radiansOff(found[0].T_map_camera, truth), 0.175);
+}
+
+/// The map as a camera sees it.
+WorkingFrame seenFrom(const Eigen::Isometry3d& T_map_camera) {
+  RgbdFrame seen = room().sequence.frame(0).frame;
+  ModelView view;
+  RenderOptions options;
+  options.age = SurfelAge::all;
+  options.with_color = true;
+  SurfelRenderer().render(room().map, seen.camera, T_map_camera, options, view);
+  seen.depth = view.depth_m;
+  seen.color = view.color;
+  WorkingFrame working;
+  working.assign(seen, cv::Mat(), FrameConfig{});
+  return working;
+}
+
+TEST(PlaceSearch, FindsACameraThatLiesOnItsSide) {
+  const auto levels = findLevels(orientedPoints(room().points), room().up, 0.3);
+  ASSERT_TRUE(levels);
+  const Eigen::Isometry3d standing = room().sequence.pose(11);
+  const double high_m = room().up.dot(standing.translation()) - levels->lowest_m;
+  for (const double roll : {-1.5, 1.4}) {
+    Eigen::Isometry3d lying = standing;
+    lying.translation() -= (high_m - 0.35) * room().up;
+    lying.linear() *= Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const auto found = searchPlaces(room().points, placeQuery(seenFrom(lying)),
+                                    afterFall(standing, 0.4, 0.3), room().up, PlaceSearchConfig{});
+    ASSERT_FALSE(found.empty());
+    EXPECT_LT(metresOff(found[0].T_map_camera, lying), 0.25) << roll;
+    EXPECT_LT(radiansOff(found[0].T_map_camera, lying), 0.175) << roll;
+  }
 }
 
 TEST(PlaceSearch, CandidatesAreSortedAndApart) {

@@ -8,26 +8,49 @@ namespace pf {
 namespace {
 
 constexpr double kUpReach_rad = 0.9;
+// A head that lies on the floor is not higher above it.
+constexpr double kLyingHeight_m = 0.6;
 
-/// Sets the query's `up` and `floor_m` from the surfaces that face up.
-void findFloor(const FrameLevel& level, const Eigen::Vector3d& up_guess, PlaceQuery& query) {
-  std::vector<float> p[6];
-  for (int v = 0; v < level.depth_m.rows; ++v) {
-    for (int u = 0; u < level.depth_m.cols; ++u) {
-      if (level.normal_z.at<float>(v, u) >= 0) continue;
-      const Eigen::Vector3d point = level.camera.unproject(u, v, level.depth_m.at<float>(v, u));
-      for (int i = 0; i < 3; ++i) p[i].push_back(static_cast<float>(point[i]));
-      p[3].push_back(level.normal_x.at<float>(v, u));
-      p[4].push_back(level.normal_y.at<float>(v, u));
-      p[5].push_back(level.normal_z.at<float>(v, u));
+/// Points and normals of a level, camera frame.
+struct LevelPoints {
+  std::vector<float> planes[6];
+
+  explicit LevelPoints(const FrameLevel& level) {
+    for (int v = 0; v < level.depth_m.rows; ++v) {
+      for (int u = 0; u < level.depth_m.cols; ++u) {
+        if (level.normal_z.at<float>(v, u) >= 0) continue;
+        const Eigen::Vector3d point = level.camera.unproject(u, v, level.depth_m.at<float>(v, u));
+        for (int i = 0; i < 3; ++i) planes[i].push_back(static_cast<float>(point[i]));
+        planes[3].push_back(level.normal_x.at<float>(v, u));
+        planes[4].push_back(level.normal_y.at<float>(v, u));
+        planes[5].push_back(level.normal_z.at<float>(v, u));
+      }
     }
   }
-  const auto levels = findLevels(
-      {p[0].data(), p[1].data(), p[2].data(), p[3].data(), p[4].data(), p[5].data(), p[0].size()},
-      up_guess, kUpReach_rad);
-  if (!levels) return;
-  query.up = levels->up;
-  query.floor_m = -levels->lowest_m;
+
+  /// The surfaces that face about `up`.
+  std::optional<SeenFloor> floor(const Eigen::Vector3d& up) const {
+    const OrientedPoints points{planes[0].data(), planes[1].data(), planes[2].data(),
+                                planes[3].data(), planes[4].data(), planes[5].data(),
+                                planes[0].size()};
+    const auto levels = findLevels(points, up, kUpReach_rad);
+    if (!levels) return std::nullopt;
+    return SeenFloor{levels->up, -levels->lowest_m};
+  }
+};
+
+/// `up_guess`: of the camera held upright, camera frame.
+void findFloors(const FrameLevel& level, const Eigen::Vector3d& up_guess, PlaceQuery& query) {
+  const LevelPoints points(level);
+  query.floor = points.floor(up_guess);
+  const Eigen::Vector3d side = up_guess.cross(Eigen::Vector3d::UnitZ());
+  if (side.isZero(1e-3)) return;
+  for (const double sign : {1.0, -1.0}) {
+    const auto floor = points.floor(sign * side.normalized());
+    if (floor && floor->below_m > 0 && floor->below_m < kLyingHeight_m) {
+      query.beside.push_back(*floor);
+    }
+  }
 }
 
 }  // namespace
@@ -59,7 +82,7 @@ PlaceQuery placeQuery(const WorkingFrame& frame, const Eigen::Vector3d& up_guess
       query.facing.at<float>(v, u) = static_cast<float>(-normal.dot(ray));
     }
   }
-  findFloor(coarse, up_guess, query);
+  findFloors(coarse, up_guess, query);
   return query;
 }
 

@@ -91,7 +91,7 @@ QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const Panora
 
 /// Positions at one height, with one tilt.
 struct Layer {
-  std::size_t tilt = 0;
+  std::size_t tilt = 0;  ///< 0: that of before
   double height_m = 0;
 };
 
@@ -146,20 +146,25 @@ void addTilts(const PlaceQuery& query, const std::vector<Eigen::Vector3d>& ups, 
 }
 
 /// The heights of the configuration with the tilt of the query's own floor (else that of before),
-/// the height at which its floor is that of the map (points in the frame of the grid), and tilt and
-/// height as they were.
+/// tilt and height as they were, and the heights at which a floor that the query sees is that of
+/// the map (points in the frame of the grid).
 void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearchConfig& config,
                Grid& grid) {
-  const std::size_t own = grid.tilts.size() - 1;
+  const std::size_t beside = grid.tilts.size() - query.beside.size();
+  const std::size_t own = beside - 1;
   for (const double height_m : config.heights_m) grid.layers.push_back({own, height_m});
   if (own != 0) grid.layers.push_back({0, 0.0});
   const auto levels = findLevels(orientedPoints(near), Eigen::Vector3d::UnitZ(), 2 * kSameTilt_rad);
-  if (!levels || !query.floor_m) return;
-  const double height_m = levels->lowest_m + *query.floor_m;
-  const bool known = std::any_of(grid.layers.begin(), grid.layers.end(), [&](const Layer& layer) {
-    return layer.tilt == own && std::abs(layer.height_m - height_m) < kSameHeight_m;
-  });
-  if (!known) grid.layers.push_back({own, height_m});
+  if (!levels) return;
+  const auto add = [&](std::size_t tilt, const SeenFloor& floor) {
+    const double height_m = levels->lowest_m + floor.below_m;
+    const bool known = std::any_of(grid.layers.begin(), grid.layers.end(), [&](const Layer& layer) {
+      return layer.tilt == tilt && std::abs(layer.height_m - height_m) < kSameHeight_m;
+    });
+    if (!known) grid.layers.push_back({tilt, height_m});
+  };
+  if (query.floor) add(own, *query.floor);
+  for (std::size_t i = 0; i < query.beside.size(); ++i) add(beside + i, query.beside[i]);
 }
 
 Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
@@ -167,9 +172,10 @@ Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Ei
   Grid grid;
   const Eigen::Vector3d up_before = around.linear().transpose() * up.normalized();
   std::vector<Eigen::Vector3d> ups = {up_before};
-  if (query.up && std::acos(std::min(1.0, query.up->dot(up_before))) > kSameTilt_rad) {
-    ups.push_back(*query.up);
+  if (query.floor && std::acos(std::min(1.0, query.floor->up.dot(up_before))) > kSameTilt_rad) {
+    ups.push_back(query.floor->up);
   }
+  for (const SeenFloor& floor : query.beside) ups.push_back(floor.up);
   grid.T_map_grid = around;
   grid.T_map_grid.linear() = around.linear() * tiltOf(up_before).transpose();
   grid.shape.headings = config.headings;

@@ -155,12 +155,12 @@ nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
                                 {"rank", rank},
                                 {"candidates", candidates.size()},
                                 {"search_cpu_ms", search_ms}};
-  if (small.up) {
+  if (small.floor) {
     const Eigen::Vector3d up_true = query.T.linear().transpose() * up;
     const Eigen::Vector3d up_last = last.linear().transpose() * up;
     out["tilted_deg"] = std::acos(std::min(1.0, up_last.dot(up_true))) * 180.0 / M_PI;
-    if (small.floor_m) out["floor_m"] = *small.floor_m;
-    out["up_error_deg"] = std::acos(std::min(1.0, small.up->dot(up_true))) * 180.0 / M_PI;
+    out["floor_m"] = small.floor->below_m;
+    out["up_error_deg"] = std::acos(std::min(1.0, small.floor->up.dot(up_true))) * 180.0 / M_PI;
   }
   PlaceSearchConfig there = config;
   there.reach_m = 0;

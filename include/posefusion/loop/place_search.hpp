@@ -12,15 +12,21 @@
 
 namespace pf {
 
+/// A level surface that a camera sees, and may be held above.
+struct SeenFloor {
+  Eigen::Vector3d up;  ///< direction against gravity in the camera frame
+  double below_m = 0;  ///< how far it is below the camera
+};
+
 /// A small frame to look for in the map, about 40x30 pixels, people left out.
 struct PlaceQuery {
   PinholeCamera camera;
-  cv::Mat depth_m;    ///< CV_32FC1, 0 = nothing known
-  cv::Mat intensity;  ///< CV_32FC1, 0..255
-  cv::Mat facing;     ///< CV_32FC1, cosine between ray and normal, 0 = nothing known
-  /// Direction against gravity in the camera frame, from the floor or a table in view.
-  std::optional<Eigen::Vector3d> up;
-  std::optional<double> floor_m;  ///< how far it is below the camera
+  cv::Mat depth_m;                 ///< CV_32FC1, 0 = nothing known
+  cv::Mat intensity;               ///< CV_32FC1, 0..255
+  cv::Mat facing;                  ///< CV_32FC1, cosine between ray and normal, 0 = nothing known
+  std::optional<SeenFloor> floor;  ///< or a table, of a camera that is held about upright
+  /// Surfaces beside the camera, so near that it may lie on them, on its side.
+  std::vector<SeenFloor> beside;
 };
 
 /// Shrinks the coarsest level of the frame. `up_guess`: direction against gravity in the camera
@@ -57,8 +63,9 @@ struct PlaceCandidate {
 /// up to +1, off by more -1, unknown to the map 0; and half the correlation of the grey levels.
 ///
 /// `up` is the direction against gravity in the map frame. The tilt of the camera is that of
-/// `around` and, where known, that of the query's own floor. Best first, none within 0.2 m and 10
-/// degrees of a better one. The bits do not depend on the number of threads.
+/// `around` and, where known, that of the query's own floor or of a surface that it may lie on.
+/// Best first, none within 0.2 m and 10 degrees of a better one. The bits do not depend on the
+/// number of threads.
 std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
                                          const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
                                          const PlaceSearchConfig& config);
