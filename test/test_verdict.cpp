@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+namespace pf {
+namespace {
+
+constexpr int kPixels = 10000;
+
+/// An alignment that looks right in every way, some way from the prediction.
+class JudgeTest : public testing::Test {
+ protected:
+  JudgeTest() {
+    frame_.depth_m = cv::Mat(100, 100, CV_32FC1, cv::Scalar(2.0));
+    frame_.valid_pixels = kPixels;
+    result_.converged = true;
+    result_.covariance = independentCovariance(0.003, 0.003);
+    prior_.covariance = independentCovariance(0.05, 0.05);
+    motion_.found = true;
+    show(0.9);
+  }
+
+  /// The map shows so much of the frame, and nearly all of it agrees.
+  void show(double part) {
+    result_.candidates = static_cast<int>(part * kPixels);
+    result_.inliers = static_cast<int>(0.95 * result_.candidates);
+  }
+
+  /// Metres from the prediction.
+  FrameOutcome judged(double step_m) {
+    result_.T_map_camera.translation().x() = step_m;
+    return judge(frame_, result_, prior_, motion_, TrackingConfig{}).outcome;
+  }
+
+  WorkingFrame frame_;
+  TrackingResult result_;
+  PosePrior prior_;
+  SparseMotion motion_;
+};
+
+TEST_F(JudgeTest, WhatThePredictionAllowsIsBelieved) {
+  EXPECT_EQ(judged(0.01), FrameOutcome::fused);
+  EXPECT_EQ(judged(0.1), FrameOutcome::fused);
+  EXPECT_EQ(judged(0.5), FrameOutcome::disagrees);
+}
+
+TEST_F(JudgeTest, WithoutCornersTheMapHasToShowMostOfTheView) {
+  motion_.found = false;
+  EXPECT_EQ(judged(0.1), FrameOutcome::fused);
+  show(0.4);
+  EXPECT_EQ(judged(0.1), FrameOutcome::jumped) << "it may slide along the rim of the map";
+  EXPECT_EQ(judged(0.01), FrameOutcome::fused) << "as it was going to";
+  motion_.found = true;
+  EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners say the same";
+}
+
+TEST_F(JudgeTest, WithoutCornersNoDirectionMayBeFree) {
+  result_.free_directions = 1;
+  EXPECT_EQ(judged(0.01), FrameOutcome::fused);
+  motion_.found = false;
+  EXPECT_EQ(judged(0.01), FrameOutcome::degenerate);
+}
+
+TEST_F(JudgeTest, WhatIsSeenThroughIsNotThere) {
+  result_.seen_through = result_.candidates / 2;
+  EXPECT_EQ(judged(0.0), FrameOutcome::seen_through);
+}
+
+TEST_F(JudgeTest, TooLittleOfTheMapSaysNothing) {
+  show(0.01);
+  EXPECT_EQ(judged(0.0), FrameOutcome::few_inliers);
+  show(0.9);
+  result_.inliers = result_.candidates / 10;
+  EXPECT_EQ(judged(0.0), FrameOutcome::few_inliers);
+  show(0.9);
+  result_.converged = false;
+  EXPECT_EQ(judged(0.0), FrameOutcome::not_converged);
+}
+
+}  // namespace
+}  // namespace pf
