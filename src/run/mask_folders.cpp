@@ -9,6 +9,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/frame.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/people_json.hpp"
 
@@ -40,7 +41,7 @@ fs::path maskFolderOf(const std::string& folder) {
   return fs::is_directory(inner) ? inner : fs::path(folder);
 }
 
-cv::Mat loadMask(const std::string& path) {
+cv::Mat readMask(const std::string& path) {
   cv::Mat mask = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (mask.empty()) throw InputError(path + ": not a readable mask");
   return mask;
@@ -67,8 +68,8 @@ void checkFound(const std::string& sequence, const std::string& people_file, con
     }
     cv::Mat depth_m;
     depthInMetres(next->frame, 0.1, 20.0, depth_m);
-    const cv::Mat truth = loadMask(truth_file->second);
-    check.addFound(truth, loadMask(mask_file->second), foundParts(truth, depth_m, seen->second));
+    const cv::Mat truth = readMask(truth_file->second);
+    check.addFound(truth, readMask(mask_file->second), foundParts(truth, depth_m, seen->second));
   }
 }
 
@@ -87,11 +88,11 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
     throw InputError(mask_folder + ": no <stamp>.png masks (run with --save-masks)");
   MaskCheck check;
   for (const auto& [stamp, path] : masks) {
-    const cv::Mat mask = loadMask(path);
+    const cv::Mat mask = readMask(path);
     const auto truth = truths.find(stamp);
     if (truth == truths.end() && !truths.empty()) continue;
     check.add(
-        truths.empty() ? cv::Mat(mask.size(), CV_8UC1, cv::Scalar(0)) : loadMask(truth->second),
+        truths.empty() ? cv::Mat(mask.size(), CV_8UC1, cv::Scalar(0)) : readMask(truth->second),
         mask);
   }
   if (check.frames() == 0) {
@@ -104,6 +105,11 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
     break;
   }
   return check;
+}
+
+cv::Mat loadMask(const std::string& folder, std::int64_t stamp_ns) {
+  const std::string path = folder + "/" + formatStamp(stamp_ns) + ".png";
+  return fs::exists(path) ? readMask(path) : cv::Mat();
 }
 
 }  // namespace pf

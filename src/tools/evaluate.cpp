@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How good a trajectory, a run, masks, reported covariances, the surface of a map, or loops are.
+// How good a trajectory, a run, its coverage, masks, reported covariances, the surface of a map, or
+// loops are.
 #include "evaluate.hpp"
 
 #include "tool.hpp"
@@ -40,6 +41,17 @@ CLI::App* addRunCommand(CLI::App& app, RunQuestion& run) {
   command->add_option("--last-frame", run.last_frame, "depth: frame to stop before")
       ->capture_default_str();
   command->add_flag("--json", run.json, "print JSON");
+  return command;
+}
+
+CLI::App* addKnownCommand(CLI::App& app, KnownQuestion& question) {
+  auto* command = app.add_subcommand(
+      "known", "how many of the frames that truly see what was mapped before have a pose");
+  command->add_option("run", question.run, "output folder of posefusion_run")->required();
+  command->add_option("sequence", question.sequence, "sequence with groundtruth.txt")->required();
+  command->add_option("--status", question.status, "table of posefusion_run --save-status")
+      ->required();
+  command->add_flag("--json", question.json, "print JSON");
   return command;
 }
 
@@ -92,9 +104,11 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   TrajectoryQuestion trajectory;
   RunQuestion run;
+  KnownQuestion known;
   PairQuestion masks, covariance, surface, loops;
   const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
   const CLI::App* run_command = addRunCommand(app, run);
+  const CLI::App* known_command = addKnownCommand(app, known);
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
   const CLI::App* surface_command = addSurfaceCommand(app, surface);
@@ -102,6 +116,8 @@ int main(int argc, char** argv) {
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
       evaluateRun(run);
+    } else if (*known_command) {
+      evaluateKnown(known);
     } else if (*masks_command) {
       evaluateMasks(masks.truth, masks.checked, masks.json);
     } else if (*covariance_command) {

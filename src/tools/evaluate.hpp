@@ -26,9 +26,16 @@ struct RunQuestion {
   bool json = false;
 };
 
+/// posefusion_evaluate known RUN_DIR SEQUENCE --status FILE
+struct KnownQuestion {
+  std::string run, sequence, status;
+  bool json = false;
+};
+
 /// Each prints its answer on stdout. They throw InputError.
 void evaluateTrajectory(const TrajectoryQuestion& question);
 void evaluateRun(const RunQuestion& question);
+void evaluateKnown(const KnownQuestion& question);
 /// posefusion_evaluate masks TRUTH_DIR MASK_DIR
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
 /// posefusion_evaluate covariance TRUTH STATUS_FILE

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "evaluate.hpp"
-#include "posefusion/core/error.hpp"
-#include "posefusion/core/stamps.hpp"
 #include "posefusion/evaluation/map_check.hpp"
 #include "posefusion/evaluation/metrics.hpp"
-#include "posefusion/io/files.hpp"
-#include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/mask_folders.hpp"
 #include "posefusion_ros/bag_source.hpp"
 
 namespace pf {
@@ -48,16 +44,6 @@ Poses truePosesInMap(const Trajectory& truth, const Trajectory& estimate) {
     poses[pair.estimate.stamp_ns] = T_truth_map.inverse() * pair.truth.T_world_camera;
   }
   return poses;
-}
-
-/// The true mask of a frame; empty when there is none.
-cv::Mat loadMask(const std::string& folder, std::int64_t stamp_ns) {
-  const std::string path = folder + "/" + formatStamp(stamp_ns) + ".png";
-  if (!std::filesystem::exists(path)) return {};
-  const std::string bytes = readFile(path);
-  const cv::Mat mask = decodeDepth(bytes.data(), bytes.size());
-  if (mask.empty() || mask.type() != CV_8UC1) throw InputError(path + ": is no 8-bit grey image");
-  return mask;
 }
 
 /// Frame and mask without lens distortion. Takes the mask along as the colour.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <opencv2/core.hpp>
 #include <string>
 
 #include "posefusion/evaluation/masks.hpp"
@@ -12,5 +14,9 @@ namespace pf {
 /// without mask/: then nobody is in it). The found people are told from people.json beside the
 /// masks and the sequence's depth, where both exist. Throws InputError naming what is missing.
 MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_folder);
+
+/// The mask `folder`/<stamp>.png (CV_8UC1); empty where there is none. Throws InputError naming a
+/// file that cannot be read.
+cv::Mat loadMask(const std::string& folder, std::int64_t stamp_ns);
 
 }  // namespace pf
