@@ -221,6 +221,24 @@ TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
   }
 }
 
+TEST(VerifyPlace, ABentMapIsBelievedWhereShapeAndPictureSayTheSame) {
+  PlaceVerdict verdict;
+  verdict.alignment.converged = true;
+  PlaceAgreement& agreement = verdict.agreement;
+  agreement.overlap = 0.7;
+  agreement.agreeing = 0.8;
+  const auto judged = [&](double spread, double correlation) {
+    agreement.spread = spread;
+    agreement.correlation = correlation;
+    return judgePlace(verdict, verdict.alignment.T_map_camera, {});
+  };
+  EXPECT_EQ(judged(0.15, 0.8), PlaceDoubt::none);
+  EXPECT_EQ(judged(0.05, 0.8), PlaceDoubt::disagrees) << "it may have slid";
+  EXPECT_EQ(judged(0.15, 0.7), PlaceDoubt::disagrees) << "it may be another room";
+  agreement.agreeing = 0.7;
+  EXPECT_EQ(judged(0.15, 0.8), PlaceDoubt::disagrees);
+}
+
 TEST(VerifyPlace, ATruePlaceIsNotBelievedThroughAGap) {
   TrueFrame truth = room().sequence.frame(8);
   PlaceVerifier verifier{TrackingConfig{}};

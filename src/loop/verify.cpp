@@ -135,8 +135,10 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
   if (!v.alignment.converged) return PlaceDoubt::not_converged;
   // Somebody or something new before the map does not speak against the place, up to a point.
   const double visible = 1.0 - v.agreement.hidden;
-  if (v.agreement.hidden > limits.max_hidden ||
-      v.agreement.agreeing < limits.min_agreeing * visible) {
+  const bool both = v.agreement.spread >= limits.shape_of_both &&
+                    v.agreement.correlation >= limits.correlation_of_both;
+  const double least_agreeing = both ? limits.min_agreeing_of_both : limits.min_agreeing;
+  if (v.agreement.hidden > limits.max_hidden || v.agreement.agreeing < least_agreeing * visible) {
     return PlaceDoubt::disagrees;
   }
   if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;

@@ -57,6 +57,8 @@ struct VerifyLimits {
   double min_view = 0.15;  ///< through a gap, a wall slides by as it likes
   double min_overlap = 0.25;
   double min_agreeing = 0.85;  ///< of what is not hidden
+  /// Enough where shape and picture say the same: a map that drift has bent agrees less.
+  double min_agreeing_of_both = 0.75, shape_of_both = 0.1, correlation_of_both = 0.75;
   double max_hidden = 0.4;
   double max_seen_through = 0.1;
   double min_correlation = 0.68;
