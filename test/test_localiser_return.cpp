@@ -6,6 +6,8 @@
 
 #include "mapper_scene.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/map/fusion.hpp"
+#include "posefusion/map/render.hpp"
 
 namespace pf {
 namespace {
@@ -92,6 +94,13 @@ TEST_F(MapperReturnTest, WithoutAGapTheShapeIsEnough) {
   EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
 }
 
+TEST_F(MapperReturnTest, WhereNoCornerTellsOfAStepShapeIsEnough) {
+  const TrueFrame away = firstBeyond(0.08);
+  see(anotherPicture(away));
+  EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
+  EXPECT_LT(errorM(status_, away), 0.01);
+}
+
 TEST_F(MapperReturnTest, FarFromWhereItWasSeenLastTheShapeIsNotEnough) {
   cover(2);
   const TrueFrame far = firstBeyond(0.16);
@@ -120,6 +129,59 @@ TEST_F(MapperReturnTest, APlaceThatWasFoundComesBeforeWhatOnlyLooksRight) {
   for (int k = 0; k < 3; ++k) see(truth_.frame);
   EXPECT_EQ(status_.state, TrackingState::tracking) << "three frames are enough where it was found";
   EXPECT_LT(errorM(status_, truth_), 0.006);
+}
+
+/// A step of a camera in a mapped room that no corner tells of.
+class LocaliserStepTest : public MapperTest {
+ protected:
+  void SetUp() override {
+    Fuser fuser;
+    for (int i = 0; i <= kFirst; ++i) fuser.fuse(frameAt(i), room().frame(i).T_map_camera, map_);
+    localiser_.begin(frameAt(kFirst), room().frame(kFirst).frame.stamp_ns,
+                     room().frame(kFirst).T_map_camera);
+  }
+  const WorkingFrame& frameAt(int i) {
+    frame_.assign(room().frame(i).frame, cv::Mat(), config().frame);
+    return frame_;
+  }
+  const ModelView& viewFrom(const Eigen::Isometry3d& T) {
+    SurfelRenderer().render(map_, frame_.camera, T, {}, view_);
+    return view_;
+  }
+  /// Some frames on; `shows`: depth of the map as the strict test sees it, times this.
+  Location step(double shows) {
+    constexpr int kStep = 8;
+    const WorkingFrame& frame = frameAt(kFirst + kStep);
+    MapRenderers render;
+    render.model = [this](const Eigen::Isometry3d& T) {
+      points_.assign(viewFrom(T));
+      return RenderedModel{points_, T};
+    };
+    render.view = [this, shows](const Eigen::Isometry3d& T) -> const ModelView& {
+      viewFrom(T);
+      view_.depth_m *= shows;
+      return view_;
+    };
+    return localiser_.locate(frame, room().frame(kFirst + kStep).frame.stamp_ns, {}, false, view_,
+                             render);
+  }
+
+  static constexpr int kFirst = 20;
+  SurfelMap map_{config().map};
+  Localiser localiser_{config().tracking};
+  WorkingFrame frame_;
+  ModelView view_;
+  ModelPyramid points_;
+};
+
+TEST_F(LocaliserStepTest, IsBelievedWhereTheMapShowsTheSame) {
+  const Location location = step(1.0);
+  EXPECT_EQ(location.outcome, FrameOutcome::fused) << location.detail;
+}
+
+TEST_F(LocaliserStepTest, IsNotBelievedByWhatTrackingAloneSays) {
+  const Location location = step(1.5);
+  EXPECT_EQ(location.outcome, FrameOutcome::disagrees) << location.detail;
 }
 
 /// A camera in a room of which the map shows nothing any more.

@@ -127,6 +127,10 @@ double positionSigma(const TrackingResult& alignment) {
       std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]));
 }
 
+bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits) {
+  return agreement.overlap >= limits.shape_overlap && agreement.spread >= limits.shape_spread;
+}
+
 PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
                       const VerifyLimits& limits) {
   const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
@@ -142,9 +146,8 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
     return PlaceDoubt::disagrees;
   }
   if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;
-  const bool has_shape =
-      v.agreement.overlap >= limits.shape_overlap && v.agreement.spread >= limits.shape_spread;
-  const double least = has_shape ? limits.min_correlation_of_shape : limits.min_correlation;
+  const double least =
+      hasShape(v.agreement, limits) ? limits.min_correlation_of_shape : limits.min_correlation;
   if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
   if (v.alignment.free_directions > 0 || positionSigma(v.alignment) > limits.max_sigma_m) {
     return PlaceDoubt::degenerate;

@@ -69,9 +69,13 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   const double blind_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
   const Eigen::Vector3d way =
       location.tracking.T_map_camera.translation() - T_map_located_.translation();
-  if (state_ == TrackingState::doubtful && verdict.outcome == FrameOutcome::fused &&
-      (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m)) {
-    verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
+  if (verdict.outcome == FrameOutcome::fused) {
+    if (state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m)) {
+      verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
+    } else if (!location.motion.found &&
+               !agree(prior.T_map_camera, location.tracking.T_map_camera)) {
+      verdict = verdictAlone(frame, location.tracking, render.view);
+    }
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;

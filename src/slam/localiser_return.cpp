@@ -19,24 +19,34 @@ constexpr int kProofsOfPlace = 3;  // where the place was already verified
 constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
 constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 
-/// What speaks against the pose of an alignment, asked as strictly as of a place that was searched.
-PlaceDoubt doubtOf(const WorkingFrame& frame, const TrackingResult& tracking,
-                   const ViewRenderer& render) {
+/// The pose of an alignment, asked as strictly as a place that was searched.
+PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracking,
+                         const ViewRenderer& render) {
   PlaceVerdict verdict;
   verdict.alignment = tracking;
   verdict.agreement = compareViews(frame, render(tracking.T_map_camera));
-  return judgePlace(verdict, tracking.T_map_camera, {});
+  verdict.doubt = judgePlace(verdict, tracking.T_map_camera, {});
+  return verdict;
 }
 
 }  // namespace
 
 Verdict Localiser::verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
                                    double gap_s, const ViewRenderer& render) {
-  const PlaceDoubt doubt = doubtOf(frame, tracking, render);
-  if (doubt == PlaceDoubt::none) return {};
+  const PlaceVerdict strict = askStrictly(frame, tracking, render);
+  if (strict.accepted()) return {};
   char text[96];
   std::snprintf(text, sizeof text, "after %.1f s without a pose, the map from there: ", gap_s);
-  return {FrameOutcome::disagrees, text + std::string(name(doubt))};
+  return {FrameOutcome::disagrees, text + std::string(name(strict.doubt))};
+}
+
+Verdict Localiser::verdictAlone(const WorkingFrame& frame, const TrackingResult& tracking,
+                                const ViewRenderer& render) {
+  const PlaceVerdict strict = askStrictly(frame, tracking, render);
+  const bool by_shape = strict.doubt == PlaceDoubt::other_picture && hasShape(strict.agreement);
+  if (strict.accepted() || by_shape) return {};
+  return {FrameOutcome::disagrees,
+          "no corner tells of the motion, the map from there: " + std::string(name(strict.doubt))};
 }
 
 void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
@@ -67,8 +77,9 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
       is_place_verified_ && positionSigma(location.tracking) > VerifyLimits().max_sigma_m;
   if (is_unsure) proofs_ = std::min(proofs_, kProofs - 1);
   if (proofs_ >= kProofs) {
-    const PlaceDoubt doubt =
-        is_place_verified_ ? PlaceDoubt::none : doubtOf(frame, location.tracking, render.view);
+    const PlaceDoubt doubt = is_place_verified_
+                                 ? PlaceDoubt::none
+                                 : askStrictly(frame, location.tracking, render.view).doubt;
     location.is_return = doubt == PlaceDoubt::none;
     if (location.is_return) {
       frames_since_return_ = 0;

@@ -20,9 +20,6 @@ constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
 constexpr double kMaxSeenThrough = 0.25;
 // What has to prove itself must look better than usual.
 constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
-// Where no corner tells of the motion and the map ends within the view (a ceiling, in a fall), the
-// rest slides along its rim as it likes.
-constexpr double kUnmeasuredOverlap = 0.5;
 
 std::string stepText(const Eigen::Isometry3d& step, const char* what) {
   char text[96];
@@ -73,10 +70,7 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
   if (agree(prior.T_map_camera, r.T_map_camera)) return {};
   const std::string text = stepText(difference, "from the prediction");
   // Anything may have happened where nothing was measured: the images alone have to prove it.
-  if (!motion.found &&
-      !isStrong(r, frame.valid_pixels, kProvenInliers, kUnmeasuredOverlap, kProvenSeenThrough)) {
-    return {FrameOutcome::jumped, text};
-  }
+  if (!motion.found && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
   const Vector6d error = logSe3(difference);
   const Matrix6d covariance = prior.covariance + r.covariance;
   if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};

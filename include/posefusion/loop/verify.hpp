@@ -78,6 +78,9 @@ TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera);
 /// Standard deviation (m) of the camera's position in the direction that is known worst.
 double positionSigma(const TrackingResult& alignment);
 
+/// Whether the shape alone says where the frame is: much of it is in the map, and faces many ways.
+bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits = {});
+
 /// What speaks against an alignment that began at `T_map_candidate`.
 PlaceDoubt judgePlace(const PlaceVerdict& verdict, const Eigen::Isometry3d& T_map_candidate,
                       const VerifyLimits& limits);

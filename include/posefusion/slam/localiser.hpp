@@ -112,6 +112,10 @@ class Localiser {
   /// What else is asked of a frame that tracking found good after a gap of `gap_s`.
   static Verdict verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
                                  double gap_s, const ViewRenderer& render);
+  /// The same of a step that no corner tells of: one plane (a ceiling, in a fall) slides as it
+  /// likes.
+  static Verdict verdictAlone(const WorkingFrame& frame, const TrackingResult& tracking,
+                              const ViewRenderer& render);
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              const MapRenderers& render);
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,

@@ -19,8 +19,8 @@ struct Verdict {
 Verdict judge(const WorkingFrame& frame, const TrackingResult& result, const PosePrior& prior,
               const SparseMotion& motion, const TrackingConfig& config);
 
-/// Is the alignment good enough to speak for itself, after a loss? `valid_pixels` are those of the
-/// frame.
+/// Is the alignment good enough to be believed where nothing else is known: after a loss, after a
+/// motion that nothing measured? `valid_pixels` are those of the frame.
 bool isProof(const TrackingResult& result, int valid_pixels);
 
 /// "12 % of the pixels".
