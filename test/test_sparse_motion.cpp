@@ -130,5 +130,52 @@ TEST_F(SparseMotionTest, CovarianceCoversTheError) {
   EXPECT_GE(covered, 18);
 }
 
+/// Somebody so near that the sensor has no depth of him, before most of the wall; `twenty` corners
+/// of the wall beside him.
+class NearPersonTest : public SparseMotionTest {
+ protected:
+  NearPersonTest() {
+    addCorners(300, 0, 0.2);
+    before_m_.colRange(kEdge_px, before_m_.cols).setTo(0);
+    after_m_.colRange(kEdge_px, after_m_.cols).setTo(0);
+    int beside = 0;
+    SparseFlow kept = flow_;
+    kept.before.clear(), kept.after.clear(), kept.ids.clear();
+    for (std::size_t i = 0; i < flow_.before.size(); ++i) {
+      const bool is_his = flow_.before[i].x > kEdge_px - kRim_px;
+      if (is_his && flow_.before[i].x < kEdge_px + kRim_px) continue;
+      if (!is_his && ++beside > 20) continue;
+      kept.before.push_back(flow_.before[i]);
+      kept.after.push_back(flow_.after[i] + (is_his ? cv::Point2f(14, 3) : cv::Point2f(0, 0)));
+      kept.ids.push_back(flow_.ids[i]);
+    }
+    flow_ = kept;
+  }
+  SparseMotion estimate(const cv::Mat& still) const {
+    return estimateMotion(
+        flow_, {before_m_, after_m_, nullptr, nullptr, Eigen::Isometry3d::Identity(), still},
+        camera_);
+  }
+
+  static constexpr int kEdge_px = 200, kRim_px = 12;
+};
+
+TEST_F(NearPersonTest, IsNotTakenForWhatIsFar) {
+  cv::Mat still(480, 640, CV_8UC1, cv::Scalar(255));
+  still.colRange(kEdge_px, still.cols).setTo(0);
+  const SparseMotion motion = estimate(still);
+  ASSERT_TRUE(motion.found);
+  EXPECT_LT(error(motion).norm(), 0.02);
+}
+
+TEST_F(NearPersonTest, NorWhereHeIsNotMaskedAndHisRimIsSeen) {
+  // Narrower than where corners lie.
+  for (const int from : {kEdge_px - 8, 624}) before_m_.colRange(from, from + 16).setTo(0.5);
+  for (const int from : {0, 464}) before_m_(cv::Rect(kEdge_px, from, 424, 16)).setTo(0.5);
+  const SparseMotion motion = estimate({});
+  ASSERT_TRUE(motion.found);
+  EXPECT_LT(error(motion).norm(), 0.02);
+}
+
 }  // namespace
 }  // namespace pf

@@ -50,11 +50,11 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   if (flow.to_ns == stamp_ns) {
     const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
-    location.motion = estimateMotion(
-        flow,
-        {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
-         follows && fused_before ? &view : nullptr, &landmarks_, previous_.T_map_camera},
-        frame.full_camera);
+    location.motion = estimateMotion(flow,
+                                     {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
+                                      follows && fused_before ? &view : nullptr, &landmarks_,
+                                      previous_.T_map_camera, previous_.small.still},
+                                     frame.full_camera);
   }
   const PosePrior prior = predict(location.motion, elapsed_s);
   T_reckoned_ =

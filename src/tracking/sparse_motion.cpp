@@ -7,6 +7,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "posefusion/core/noise.hpp"
+#include "surroundings.hpp"
 
 namespace pf {
 namespace {
@@ -56,6 +57,7 @@ bool isBeforeMap(const ModelView& view, const PinholeCamera& camera, const cv::P
 std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
                             const Landmarks* landmarks, const PinholeCamera& camera) {
   std::vector<Sight> sights;
+  const Surroundings surroundings(scene.before_m, scene.before_still);
   const Eigen::Isometry3d T_before_map = scene.T_map_before.inverse();
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
     const cv::Point2f &a = flow.before[i], &b = flow.after[i];
@@ -67,6 +69,7 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
     Sight sight{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
     if (known != nullptr) sight.before = T_before_map * known->at;
     sight.is_far = known == nullptr && z <= 0;
+    if (sight.is_far && !surroundings.areOpen(a)) continue;
     if (!sight.is_far) sight.after_m = smoothDepthAt(scene.after_m, b);
     sights.push_back(sight);
   }
