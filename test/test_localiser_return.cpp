@@ -149,8 +149,7 @@ class LocaliserStepTest : public MapperTest {
     return view_;
   }
   /// Some frames on; `shows`: depth of the map as the strict test sees it, times this.
-  Location step(double shows) {
-    constexpr int kStep = 8;
+  Location step(double shows, const SparseFlow& flow = {}, bool forced = false) {
     const WorkingFrame& frame = frameAt(kFirst + kStep);
     MapRenderers render;
     render.model = [this](const Eigen::Isometry3d& T) {
@@ -162,11 +161,19 @@ class LocaliserStepTest : public MapperTest {
       view_.depth_m *= shows;
       return view_;
     };
-    return localiser_.locate(frame, room().frame(kFirst + kStep).frame.stamp_ns, {}, false, view_,
-                             render);
+    return localiser_.locate(frame, room().frame(kFirst + kStep).frame.stamp_ns, flow, forced,
+                             view_, render);
+  }
+  /// The corners' way from the first frame into another one, as if that were the next.
+  static SparseFlow flowTo(int i) {
+    FlowTracker tracker;
+    tracker.advance(room().frame(kFirst).frame);
+    RgbdFrame next = room().frame(i).frame;
+    next.stamp_ns = room().frame(kFirst + kStep).frame.stamp_ns;
+    return tracker.advance(next);
   }
 
-  static constexpr int kFirst = 20;
+  static constexpr int kFirst = 20, kStep = 8;
   SurfelMap map_{config().map};
   Localiser localiser_{config().tracking};
   WorkingFrame frame_;
@@ -182,6 +189,18 @@ TEST_F(LocaliserStepTest, IsBelievedWhereTheMapShowsTheSame) {
 TEST_F(LocaliserStepTest, IsNotBelievedByWhatTrackingAloneSays) {
   const Location location = step(1.5);
   EXPECT_EQ(location.outcome, FrameOutcome::disagrees) << location.detail;
+}
+
+TEST_F(LocaliserStepTest, OfABlurredFrameIsToldWhereCornersDoNotContradict) {
+  const Localiser before = localiser_;
+  const Location location = step(1.0, flowTo(kFirst + kStep), true);
+  ASSERT_TRUE(location.motion.found);
+  EXPECT_EQ(location.outcome, FrameOutcome::forced);
+  EXPECT_TRUE(location.located);
+  localiser_ = before;
+  const Location contradicted = step(1.0, flowTo(kFirst), true);
+  ASSERT_TRUE(contradicted.motion.found);
+  EXPECT_FALSE(contradicted.located) << "corners say that it stands still";
 }
 
 /// A camera in a room of which the map shows nothing any more.

@@ -22,6 +22,9 @@ constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr int kEnoughCorners = 40;
 constexpr double kHalf = 0.5;
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
+// A blurred frame is not told where its corners contradict its alignment by more: in a turn they do
+// not, in a fall they do.
+constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr int kProbationFrames = 60;
 // After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
 // it, and one frame is little to go by.
@@ -185,8 +188,9 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
        untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
        isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
   if (location.outcome == FrameOutcome::forced) {
-    location.located = true;
-    seen_ns_ = stamp_ns;
+    const Eigen::Isometry3d off = prior.T_map_camera.inverse() * location.tracking.T_map_camera;
+    location.located = !motion.found || isWithin(off, kMaxForced_m, kMaxForced_rad);
+    if (location.located) seen_ns_ = stamp_ns;
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;
     location.tracking.covariance = prior.covariance;
