@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -12,6 +13,7 @@ namespace {
 // A correct pose and a wrong one may both look grey: the correlation counts half of the shape.
 constexpr float kGreyShare = 0.5F;
 constexpr float kLeastSpread = 30.0F;  // variance of grey levels below which they tell nothing
+constexpr double kLeastFacing = 0.2;
 
 /// Sums of one pixel for all headings.
 struct Sums {
@@ -63,6 +65,33 @@ void HeadingScores::compute(const Panorama& panorama, const QueryRays& rays, int
     }
     score[h] = all * (known[h] - 2.0F * difference[h] + kGreyShare * agreeing[h] * correlation[h]);
   }
+}
+
+QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
+                 double step_m) {
+  QueryRays rays;
+  const double bin = shape.bin_rad();
+  for (int v = 0; v < query.depth_m.rows; ++v) {
+    for (int u = 0; u < query.depth_m.cols; ++u) {
+      const float depth = query.depth_m.at<float>(v, u);
+      if (depth <= 0) continue;
+      const Eigen::Vector3d p = R * query.camera.unproject(u, v, depth);
+      const double range = p.norm();
+      if (range > shape.max_range_m) continue;
+      const double elevation = std::asin(p.z() / range), azimuth = std::atan2(p.y(), p.x());
+      rays.row.push_back(static_cast<int>(std::floor(elevation / bin)));
+      rays.column.push_back(
+          std::min(shape.columns() - 1, static_cast<int>(std::floor((azimuth + M_PI) / bin))));
+      rays.range.push_back(static_cast<float>(range));
+      // Along the ray a leaning surface is off by more than across it, within a bin most of all.
+      const double cosine = std::max<double>(kLeastFacing, query.facing.at<float>(v, u));
+      const double across = 0.5 * step_m + 0.5 * bin * range * std::sqrt(1.0 - cosine * cosine) +
+                            3.0 * depthSigma(depth);
+      rays.inverse_tolerance.push_back(static_cast<float>(cosine / across));
+      rays.intensity.push_back(query.intensity.at<float>(v, u));
+    }
+  }
+  return rays;
 }
 
 }  // namespace pf

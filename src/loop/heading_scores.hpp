@@ -18,6 +18,11 @@ struct QueryRays {
   std::size_t size() const { return row.size(); }
 };
 
+/// Pixels that show something, as directions of a camera with orientation `R` in the grid, of which
+/// positions are `step_m` apart; rows count from elevation 0 until the lowest is known.
+QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
+                 double step_m);
+
 /// How the query fits at each heading from one position. As long as there are headings.
 struct HeadingScores {
   std::vector<float> known, agreeing, difference, score, correlation;

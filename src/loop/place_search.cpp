@@ -6,7 +6,6 @@
 
 #include "heading_scores.hpp"
 #include "panorama.hpp"
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/core/se3.hpp"
 
@@ -15,7 +14,6 @@ namespace {
 
 constexpr double kBin_rad = 0.033;  // of the panorama, about: a pixel of the query and a bit
 constexpr double kSameTilt_rad = 0.03;
-constexpr double kLeastFacing = 0.2;
 constexpr double kSameHeight_m = 0.05;
 constexpr double kApart_m = 0.2, kApart_rad = 0.17;
 
@@ -60,34 +58,6 @@ struct Tilt {
   Eigen::Matrix3d R_grid_camera;  ///< at heading 0
   QueryRays rays;
 };
-
-/// Pixels that show something, as directions; rows count from elevation 0 until lowest is known.
-QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
-                 double step_m) {
-  QueryRays rays;
-  const double bin = shape.bin_rad();
-  for (int v = 0; v < query.depth_m.rows; ++v) {
-    for (int u = 0; u < query.depth_m.cols; ++u) {
-      const float depth = query.depth_m.at<float>(v, u);
-      if (depth <= 0) continue;
-      const Eigen::Vector3d p = R * query.camera.unproject(u, v, depth);
-      const double range = p.norm();
-      if (range > shape.max_range_m) continue;
-      const double elevation = std::asin(p.z() / range), azimuth = std::atan2(p.y(), p.x());
-      rays.row.push_back(static_cast<int>(std::floor(elevation / bin)));
-      rays.column.push_back(
-          std::min(shape.columns() - 1, static_cast<int>(std::floor((azimuth + M_PI) / bin))));
-      rays.range.push_back(static_cast<float>(range));
-      // Along the ray a leaning surface is off by more than across it, within a bin most of all.
-      const double cosine = std::max<double>(kLeastFacing, query.facing.at<float>(v, u));
-      const double across = 0.5 * step_m + 0.5 * bin * range * std::sqrt(1.0 - cosine * cosine) +
-                            3.0 * depthSigma(depth);
-      rays.inverse_tolerance.push_back(static_cast<float>(cosine / across));
-      rays.intensity.push_back(query.intensity.at<float>(v, u));
-    }
-  }
-  return rays;
-}
 
 /// Positions at one height, with one tilt.
 struct Layer {
@@ -158,10 +128,11 @@ void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearch
   if (!levels) return;
   const auto add = [&](std::size_t tilt, const SeenFloor& floor) {
     const double height_m = levels->lowest_m + floor.below_m;
-    const bool known = std::any_of(grid.layers.begin(), grid.layers.end(), [&](const Layer& layer) {
+    const auto is_same = [&](const Layer& layer) {
       return layer.tilt == tilt && std::abs(layer.height_m - height_m) < kSameHeight_m;
-    });
-    if (!known) grid.layers.push_back({tilt, height_m});
+    };
+    if (std::any_of(grid.layers.begin(), grid.layers.end(), is_same)) return;
+    grid.layers.push_back({tilt, height_m});
   };
   if (query.floor) add(own, *query.floor);
   for (std::size_t i = 0; i < query.beside.size(); ++i) add(beside + i, query.beside[i]);

@@ -26,9 +26,6 @@ constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
 // not, in a fall they do.
 constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr int kProbationFrames = 60;
-// After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
-// it, and one frame is little to go by.
-constexpr double kMaxBlind_s = 0.25, kMaxBlind_m = 0.15;
 
 }  // namespace
 
@@ -49,16 +46,8 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                            bool forced, const ModelView& view, const MapRenderers& render) {
   Location location;
-  const bool fused_before = trusted_ns_ == previous_.stamp_ns;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
-  if (flow.to_ns == stamp_ns) {
-    const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
-    location.motion = estimateMotion(flow,
-                                     {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
-                                      follows && fused_before ? &view : nullptr, &landmarks_,
-                                      previous_.T_map_camera, previous_.small.still},
-                                     frame.full_camera);
-  }
+  location.motion = measure(frame, stamp_ns, flow, view);
   const PosePrior prior = predict(location.motion, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
@@ -69,16 +58,8 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
   }
-  const double blind_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
-  const Eigen::Vector3d way =
-      location.tracking.T_map_camera.translation() - T_map_located_.translation();
   if (verdict.outcome == FrameOutcome::fused) {
-    if (state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m)) {
-      verdict = verdictAfterGap(frame, location.tracking, blind_s, render.view);
-    } else if (!location.motion.found &&
-               !agree(prior.T_map_camera, location.tracking.T_map_camera)) {
-      verdict = verdictAlone(frame, location.tracking, render.view);
-    }
+    verdict = askFurther(frame, location, prior, stamp_ns, render.view);
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;
@@ -92,6 +73,19 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   }
   remember(frame, flow, prior, location, stamp_ns);
   return location;
+}
+
+/// By the corners that lead from the frame before.
+SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns,
+                                const SparseFlow& flow, const ModelView& view) const {
+  if (flow.to_ns != stamp_ns) return {};
+  const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
+  const bool fused_before = trusted_ns_ == previous_.stamp_ns;
+  return estimateMotion(flow,
+                        {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
+                         follows && fused_before ? &view : nullptr, &landmarks_,
+                         previous_.T_map_camera, previous_.small.still},
+                        frame.full_camera);
 }
 
 PosePrior Localiser::predict(const SparseMotion& motion, double elapsed_s) const {

@@ -19,6 +19,10 @@ constexpr int kProofsOfPlace = 3;  // where the place was already verified
 constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
 constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 
+// After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
+// it, and one frame is little to go by.
+constexpr double kMaxBlind_s = 0.25, kMaxBlind_m = 0.15;
+
 /// The pose of an alignment, asked as strictly as a place that was searched.
 PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracking,
                          const ViewRenderer& render) {
@@ -31,22 +35,24 @@ PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracki
 
 }  // namespace
 
-Verdict Localiser::verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
-                                   double gap_s, const ViewRenderer& render) {
+Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& location,
+                              const PosePrior& prior, std::int64_t stamp_ns,
+                              const ViewRenderer& render) const {
+  const TrackingResult& tracking = location.tracking;
+  const double blind_s = 1e-9 * static_cast<double>(stamp_ns - seen_ns_);
+  const Eigen::Vector3d way = tracking.T_map_camera.translation() - T_map_located_.translation();
+  const bool is_after_gap =
+      state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m);
+  const bool is_alone = !location.motion.found && !agree(prior.T_map_camera, tracking.T_map_camera);
+  if (!is_after_gap && !is_alone) return {};
   const PlaceVerdict strict = askStrictly(frame, tracking, render);
-  if (strict.accepted()) return {};
-  char text[96];
-  std::snprintf(text, sizeof text, "after %.1f s without a pose, the map from there: ", gap_s);
-  return {FrameOutcome::disagrees, text + std::string(name(strict.doubt))};
-}
-
-Verdict Localiser::verdictAlone(const WorkingFrame& frame, const TrackingResult& tracking,
-                                const ViewRenderer& render) {
-  const PlaceVerdict strict = askStrictly(frame, tracking, render);
-  const bool by_shape = strict.doubt == PlaceDoubt::other_picture && hasShape(strict.agreement);
+  const bool by_shape =
+      !is_after_gap && strict.doubt == PlaceDoubt::other_picture && hasShape(strict.agreement);
   if (strict.accepted() || by_shape) return {};
+  char why[64] = "no corner tells of the motion";
+  if (is_after_gap) std::snprintf(why, sizeof why, "after %.1f s without a pose", blind_s);
   return {FrameOutcome::disagrees,
-          "no corner tells of the motion, the map from there: " + std::string(name(strict.doubt))};
+          std::string(why) + ", the map from there: " + std::string(name(strict.doubt))};
 }
 
 void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {

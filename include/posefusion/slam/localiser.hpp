@@ -102,6 +102,8 @@ class Localiser {
     SmallImage small;
   };
 
+  SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
+                       const ModelView& view) const;
   PosePrior predict(const SparseMotion& motion, double elapsed_s) const;
   TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
                        const SparseMotion& motion, const ModelRenderer& render,
@@ -109,13 +111,11 @@ class Localiser {
   void carry(const SparseMotion& motion);
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
-  /// What else is asked of a frame that tracking found good after a gap of `gap_s`.
-  static Verdict verdictAfterGap(const WorkingFrame& frame, const TrackingResult& tracking,
-                                 double gap_s, const ViewRenderer& render);
-  /// The same of a step that no corner tells of: one plane (a ceiling, in a fall) slides as it
-  /// likes.
-  static Verdict verdictAlone(const WorkingFrame& frame, const TrackingResult& tracking,
-                              const ViewRenderer& render);
+  /// What else is asked of a frame that tracking found good: after a gap, and where no corner tells
+  /// of a step, it has to pass what a searched place must pass. One plane (a ceiling, in a fall)
+  /// slides as it likes.
+  Verdict askFurther(const WorkingFrame& frame, const Location& location, const PosePrior& prior,
+                     std::int64_t stamp_ns, const ViewRenderer& render) const;
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              const MapRenderers& render);
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
