@@ -22,8 +22,8 @@ constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr int kEnoughCorners = 40;
 constexpr double kHalf = 0.5;
 constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
-// A blurred frame is not told where its corners contradict its alignment by more: in a turn they do
-// not, in a fall they do.
+// A blurred frame is not told where its alignment needs its corners, or they contradict it by more:
+// in a turn they do not, in a fall they do.
 constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr int kProbationFrames = 60;
 
@@ -183,7 +183,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
        isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
   if (location.outcome == FrameOutcome::forced) {
     const Eigen::Isometry3d off = prior.T_map_camera.inverse() * location.tracking.T_map_camera;
-    location.located = !motion.found || isWithin(off, kMaxForced_m, kMaxForced_rad);
+    location.located = location.tracking.free_directions == 0 &&
+                       (!motion.found || isWithin(off, kMaxForced_m, kMaxForced_rad));
     if (location.located) seen_ns_ = stamp_ns;
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;
