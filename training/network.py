@@ -75,14 +75,20 @@ class PersonNetwork(nn.Module):
             self.centre.bias[0] = -3.0
 
     def forward(self, depth):
+        return self.heads(*self.features(depth))
+
+    def features(self, depth):
+        """Bx24x60x80 for the mask, Bx64x30x40 for joints and centres."""
         half = self.second(functional.relu(self.stem(depth)))
         quarter = self.fourth(half)
         eighth = self.eighth(quarter)
         eighth = self.up_eighth(self.sixteenth(eighth), eighth)
         quarter = self.up_fourth(eighth, quarter)
         points = self.points(quarter)
-        mask = self.mask(self.up_second(quarter, half))
-        return mask, self.joints(points), self.centre(points)
+        return self.up_second(quarter, half), points
+
+    def heads(self, fine, points):
+        return self.mask(fine), self.joints(points), self.centre(points)
 
 
 class Answers(nn.Module):
