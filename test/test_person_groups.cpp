@@ -110,6 +110,15 @@ TEST(PersonGroups, FewJointsAreAGuess) {
   }
 }
 
+TEST(PersonGroups, OfWhomTheBorderCutsTheMaskCountsToo) {
+  const cv::Rect inside(20, 20, 28, 80), cut(0, 20, 28, 80), small(0, 20, 8, 20);
+  EXPECT_NEAR(Drawn({{inside, 2.0F, 1}}).group().people.at(0).score, 0.8 / 6, 1e-5);
+  EXPECT_NEAR(Drawn({{cut, 2.0F, 1}}).group().people.at(0).score, 0.95 - 0.2, 1e-5);
+  EXPECT_NEAR(Drawn({{small, 2.0F, 1}}).group().people.at(0).score, 0.8 / 6, 1e-5) << "a hand";
+  EXPECT_NEAR(Drawn({{cut, 2.0F, 6}}).group().people.at(0).score, 0.8, 1e-5) << "joints are more";
+  EXPECT_TRUE(Drawn({{cut, 2.0F, 0}}).group().people.empty()) << "still a chair";
+}
+
 TEST(PersonGroups, KeepsTheBestWhereThereAreTooMany) {
   const Drawn drawn(
       {{{10, 20, 28, 80}, 2.0F, 6}, {{60, 20, 20, 40}, 2.0F, 6}, {{110, 20, 28, 90}, 2.0F, 6}});

@@ -17,6 +17,24 @@ constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint
 constexpr int kScoredJoints = 6;        // whose mean is the person's score
 constexpr float kJointReach_m = 0.50F;  // of a joint's vote
 constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is nobody
+// Whom the border cuts shows few joints. What the mask says is then worth as much as joints that
+// are so much less likely.
+constexpr float kCutArea_m2 = 0.05F;
+constexpr float kMaskAboveJoints = 0.2F;
+
+/// What the mask says of a group.
+struct MaskSums {
+  float weight = 0.0F, cells = 0.0F;
+  bool at_border = false;  // sensors see nothing in the outermost pixels: the next cell counts too
+
+  void add(const Vote& vote) {
+    const int x = vote.cell % kMaskWidth, y = vote.cell / kMaskWidth;
+    weight += std::min(vote.weight, 1.0F);
+    cells += 1.0F;
+    at_border |= std::min(x, y) <= 1 || x >= kMaskWidth - 2 || y >= kMaskHeight - 2;
+  }
+  float mean() const { return cells > 0.0F ? weight / cells : 0.0F; }
+};
 
 float valueAt(const cv::Mat& map, int x, int y) { return map.at<float>(y, x); }
 
@@ -117,7 +135,7 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
 }
 
 /// The mean of the best joints, which those who have fewer miss.
-float scoreOf(const Person& person) {
+float scoreOfJoints(const Person& person) {
   std::array<float, kJointCount> p{};
   for (std::size_t j = 0; j < p.size(); ++j) p[j] = person.joints[j].p;
   std::sort(p.begin(), p.end(), std::greater<>());
@@ -126,11 +144,23 @@ float scoreOf(const Person& person) {
   return score;
 }
 
+void scorePeople(const std::vector<Vote>& votes, std::vector<Group>& groups) {
+  std::vector<MaskSums> sums(groups.size());
+  for (const Vote& vote : votes) {
+    if (vote.group >= 0) sums[static_cast<std::size_t>(vote.group)].add(vote);
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    float& score = groups[i].person.score;
+    score = scoreOfJoints(groups[i].person);
+    const bool is_cut = sums[i].at_border && groups[i].area_m2 >= kCutArea_m2;
+    if (is_cut && score > 0.0F) score = std::max(score, sums[i].mean() - kMaskAboveJoints);
+  }
+}
+
 /// Group of each person, best first.
-std::vector<int> bestFirst(std::vector<Group>& groups, int max_people) {
+std::vector<int> bestFirst(const std::vector<Group>& groups, int max_people) {
   std::vector<int> order;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    groups[i].person.score = scoreOf(groups[i].person);
     if (groups[i].area_m2 >= kMinArea_m2 && groups[i].person.score > 0.0F) {
       order.push_back(static_cast<int>(i));
     }
@@ -175,6 +205,7 @@ People groupPeople(const PersonMaps& maps, const cv::Mat& small_m, const Pinhole
   std::vector<Vote> votes = collectVotes(maps, small_m);
   std::vector<Group> groups = groupVotes(input, votes);
   addJoints(maps, small_m, input, groups);
+  scorePeople(votes, groups);
   const std::vector<int> order = bestFirst(groups, max_people);
   People people;
   people.detected = true;

@@ -13,7 +13,7 @@ namespace {
 constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask around its person
 
 // Somebody new, by a detector that gives a mask with every frame.
-constexpr float kSureNewScore = 0.6F;  // believed without the map
+constexpr float kSureNewScore = 0.7F;  // believed without the map
 constexpr float kShownNew = 0.5F;      // probability of the cells that are asked about
 constexpr float kKnownNew = 0.5F;      // the map knows this part of them at least ...
 constexpr float kNearerNew = 0.8F;     // ... and this part of those stands before it
