@@ -30,7 +30,7 @@ TEST(MayBeNew, AWeakDetectionHasToStandBeforeTheMap) {
 
 TEST(MayBeNew, ASureDetectionNeedsNoMap) {
   Detections sure;
-  sure.people.people[0].score = 0.6F;
+  sure.people.people[0].score = 0.8F;
   for (const Background b : {Background::nearer, Background::agrees, Background::unknown}) {
     EXPECT_TRUE(sure.mayBeNew(b)[0]);
   }
