@@ -28,6 +28,13 @@ TEST(MayBeNew, AWeakDetectionHasToStandBeforeTheMap) {
   EXPECT_FALSE(weak.mayBeNew(Background::nearer)[0]) << "of these cells it is not even sure";
 }
 
+TEST(MayBeNew, AChairSeenFromItsSideIsWeakToo) {
+  Detections chair;
+  chair.people.people[0].score = 0.6F;  // of a real one, in an empty kitchen
+  EXPECT_FALSE(chair.mayBeNew(Background::agrees)[0]);
+  EXPECT_FALSE(chair.mayBeNew(Background::unknown)[0]);
+}
+
 TEST(MayBeNew, ASureDetectionNeedsNoMap) {
   Detections sure;
   sure.people.people[0].score = 0.8F;
