@@ -47,6 +47,20 @@ TEST_F(MapperTest, CovarianceIsPositiveAndSmallInARoom) {
   }
 }
 
+TEST_F(MapperTest, AGapBetweenPeopleIsNotEnoughToTrackBy) {
+  for (const auto& [width, outcome] :
+       {std::pair{22, FrameOutcome::no_depth}, std::pair{48, FrameOutcome::fused}}) {
+    Mapper mapper(config());
+    for (int i = 0; i < 10; ++i) mapper.process({room().frame(i).frame, {}, {}});
+    const TrueFrame truth = room().frame(10);
+    cv::Mat gap(truth.frame.depth.size(), truth.frame.depth.type(), cv::Scalar(0));
+    const cv::Rect seen(100, 0, width, gap.rows);
+    truth.frame.depth(seen).copyTo(gap(seen));
+    EXPECT_EQ(mapper.process({withDepth(truth, gap), {}, {}}).outcome, outcome)
+        << width << " of 320";
+  }
+}
+
 TEST_F(MapperTest, ABareWallIsNotTrusted) {
   TrueFrame truth = room().frame(0);
   RgbdFrame wall = truth.frame;

@@ -111,7 +111,7 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
   TrackingResult best;
   best.T_map_camera = prior.T_map_camera;
   const double pixels = static_cast<double>(frame.depth_m.total());
-  if (frame.valid_pixels < config_.min_valid_fraction * pixels) {
+  if (frame.valid_pixels < config_.min_view_fraction * pixels) {
     verdict = {FrameOutcome::no_depth,
                percentOf(frame.valid_pixels, pixels, "of the pixels have depth")};
     return best;

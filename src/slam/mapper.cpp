@@ -62,7 +62,7 @@ Location Mapper::State::locate(const StaticFrame& input) {
     return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render);
   }
   const auto needed =
-      config.tracking.min_valid_fraction * static_cast<double>(frame.depth_m.total());
+      config.tracking.min_view_fraction * static_cast<double>(frame.depth_m.total());
   if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
   Location nowhere;
   nowhere.outcome = FrameOutcome::no_depth;

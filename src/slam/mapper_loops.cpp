@@ -81,7 +81,7 @@ void Mapper::State::tellCloser() {
 void Mapper::State::askForPlace() {
   const double pixels = static_cast<double>(frame.depth_m.total());
   if (!config.loop.enabled || place_is_asked ||
-      frame.valid_pixels < config.tracking.min_valid_fraction * pixels) {
+      frame.valid_pixels < config.tracking.min_view_fraction * pixels) {
     return;
   }
   if (!map_at_loss) map_at_loss = searchedMap();

@@ -12,6 +12,7 @@ struct TrackingConfig {
   double photometric_sigma = 12.0;
   bool rotation_prealignment = true;
   int max_iterations = 12;
+  double min_view_fraction = 0.10;
   double min_valid_fraction = 0.03;
   double min_inlier_fraction = 0.4;
   int lost_after_frames = 10;
@@ -26,6 +27,9 @@ inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
   v.flag("rotation_prealignment", c.rotation_prealignment,
          "align small images by rotation alone first");
   v.integer("max_iterations", c.max_iterations, 1, 1000, "Gauss-Newton steps on each level");
+  v.number("min_view_fraction", c.min_view_fraction, 0.0, 1.0,
+           "least part of the image that must have depth beside people: through a gap, a frame "
+           "slides along the wall behind");
   v.number("min_valid_fraction", c.min_valid_fraction, 0.0, 1.0,
            "least part of the image that must have depth and model");
   v.number("min_inlier_fraction", c.min_inlier_fraction, 0.0, 1.0,
