@@ -42,6 +42,37 @@ TEST(Fuser, TheSameViewAgainAddsSupportAndNoSurfels) {
   EXPECT_EQ(map.stableCount(), size);
 }
 
+std::size_t stableNear(const SurfelMap& map, double z) {
+  std::size_t count = 0;
+  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+    count += map.isStable(s, i) && std::abs(s.z[i] - z) < 0.05 ? 1 : 0;
+  });
+  return count;
+}
+
+TEST(Fuser, WhatComesBeforeAKnownWallIsStableOnlyLater) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(10, scene(3.0), map);
+  fuseOften(30, scene(3.0, 1.5), map);
+  EXPECT_GT(countNear(map, 1.5), 1000U) << "it is in the map";
+  EXPECT_EQ(stableNear(map, 1.5), 0U) << "but may be somebody";
+  fuseOften(12, scene(3.0, 1.5), map);
+  EXPECT_GT(stableNear(map, 1.5), 1000U) << "who stays is furniture";
+}
+
+TEST(Fuser, WhatIsSeenTogetherWithItsWallIsStableSoon) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(10, scene(3.0, 1.5), map);
+  EXPECT_GT(stableNear(map, 1.5), 1000U);
+}
+
+TEST(Fuser, WhatStandsCloseBeforeAKnownWallIsStableSoon) {
+  SurfelMap map{MapConfig{}};
+  fuseOften(10, scene(3.0), map);
+  fuseOften(10, scene(3.0, 2.8), map);
+  EXPECT_GT(stableNear(map, 2.8), 1000U) << "a picture, a shelf";
+}
+
 TEST(Fuser, AveragesNoiseAway) {
   MapConfig config;
   config.max_weight = 1000;

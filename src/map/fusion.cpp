@@ -118,7 +118,7 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);
   counts.removed = clean(map);
-  surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence.explained, s.fresh);
+  surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence, s.fresh);
   counts.inserted = map.add(s.fresh);
   return counts;
 }
@@ -128,6 +128,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   Scratch& s = *scratch_;
   findFreeSpace(frame, s.seen_m, s.evidence.free_m);
   s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
+  s.evidence.known_behind.assign(frame.depth_m.size());
   s.visible = visibleBlocks(map, frame.camera, T_map_camera,
                             reachOf(s.seen_m, s.people_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);

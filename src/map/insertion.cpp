@@ -10,8 +10,12 @@
 namespace pf {
 namespace {
 
-bool isWanted(const WorkingFrame& frame, const std::vector<std::int64_t>& explained, int u, int v) {
-  return explained[v * frame.camera.width + u] == kUnexplained &&
+// Support that what stands before a known surface begins below nothing with: somebody whom the
+// detector misses for a second shall not become part of the room.
+constexpr float kNewcomerFrames = 30.0F;
+
+bool isWanted(const WorkingFrame& frame, const Evidence& evidence, int u, int v) {
+  return evidence.explained[v * frame.camera.width + u] == kUnexplained &&
          frame.depth_m.at<float>(v, u) > 0 && frame.levels[0].normal_z.at<float>(v, u) < 0;
 }
 
@@ -41,13 +45,13 @@ void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const Fus
 }  // namespace
 
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
-                          const FusionOptions& options, int now,
-                          const std::vector<std::int64_t>& explained, SurfelArrays& surfels) {
+                          const FusionOptions& options, int now, const Evidence& evidence,
+                          SurfelArrays& surfels) {
   const int rows = frame.camera.height, cols = frame.camera.width;
   std::vector<std::size_t> row_start(rows + 1, 0);
   parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < cols; ++u) row_start[v + 1] += isWanted(frame, explained, u, v) ? 1 : 0;
+      for (int u = 0; u < cols; ++u) row_start[v + 1] += isWanted(frame, evidence, u, v) ? 1 : 0;
     }
   });
   for (int v = 0; v < rows; ++v) row_start[v + 1] += row_start[v];
@@ -59,8 +63,10 @@ void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       std::size_t next = row_start[v];
       for (int u = 0; u < cols; ++u) {
-        if (isWanted(frame, explained, u, v)) {
-          writeSurfel(frame, to_map, options, u, v, next++, surfels);
+        if (isWanted(frame, evidence, u, v)) {
+          writeSurfel(frame, to_map, options, u, v, next, surfels);
+          if (evidence.known_behind.has(u, v)) surfels.confidence[next] -= kNewcomerFrames;
+          ++next;
         }
       }
     }

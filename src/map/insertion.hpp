@@ -13,9 +13,10 @@
 namespace pf {
 
 /// Makes a surfel of each pixel with depth and normal that is kUnexplained, row by row.
+/// What stands before a surface that is known has to be seen for longer until it counts as stable.
 /// Reuses the memory of `surfels`; `now` is the number of the frame.
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
-                          const FusionOptions& options, int now,
-                          const std::vector<std::int64_t>& explained, SurfelArrays& surfels);
+                          const FusionOptions& options, int now, const Evidence& evidence,
+                          SurfelArrays& surfels);
 
 }  // namespace pf

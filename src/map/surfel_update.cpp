@@ -26,6 +26,8 @@ constexpr std::int32_t kUnnoticed_frames = 45;
 constexpr int kUnnoticedViolations = 2;  // a frame
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
+// What stands so far before a stable surface may have come there.
+constexpr float kWellBefore_m = 0.25F;
 
 /// Depths closer than this measure the same surface.
 inline float agreement(float z) { return surfaceTolerance(z, 5.0F); }
@@ -91,6 +93,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
   const float measured = depthOnRay(p);
   const float off = std::abs(measured - p.z);
+  if (p.z - measured > kWellBefore_m && map_.isStable(s, i)) evidence_.known_behind.mark(p.u, p.v);
   if (off > std::max(tolerance, kLayer_m)) return false;
   const Eigen::Vector3f n = normal(p.u, p.v);
   Eigen::Vector3f own;
@@ -147,7 +150,8 @@ void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
     if (!isDoubled(seen, s.created[i] - (stable ? kAnotherPass_frames : 1))) continue;
     // Its support is taken back, and as much of that before.
     const int taken = 2 * (stable ? kTurns : 1);
-    s.confidence[i] = std::max(0.0F, s.confidence[i] - static_cast<float>(taken));
+    const float left = std::max(0.0F, s.confidence[i] - static_cast<float>(taken));
+    s.confidence[i] = std::min(s.confidence[i], left);
     s.violations[i] += taken;
   }
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "known_behind.hpp"
 #include "near_people.hpp"
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/frame/working_frame.hpp"
@@ -44,6 +45,7 @@ struct Evidence {
   NearPeople near_people;  ///< around everybody in view
   /// Per pixel an Explanation; one made in this frame where only unstable surfels agree.
   std::vector<std::int64_t> explained;
+  KnownBehind known_behind;
 };
 
 /// The update of the surfels of one range from one frame. Threads may share it: each call writes

@@ -60,7 +60,7 @@ class SurfelMap {
   bool isDead(const SurfelArrays& s, std::size_t i) const {
     // What contradicts a surfel must outweigh what supported it, so that some frames at a wrong
     // pose do not erase the room; but not more than a second of it, so that furniture can move.
-    const float outweighed = std::min(s.confidence[i], kMostOutweighed);
+    const float outweighed = std::clamp(s.confidence[i], 0.0F, kMostOutweighed);
     if (static_cast<float>(s.violations[i] - config_.max_violations) > outweighed) return true;
     return !isStable(s, i) && frame_ - s.seen[i] > config_.max_unstable_age_frames;
   }
