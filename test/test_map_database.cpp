@@ -232,7 +232,8 @@ TEST(MapDatabase, RefusesWhatIsNoMap) {
   EXPECT_EQ(error(""), no_map);
   EXPECT_EQ(error("ply\nformat binary_little_endian 1.0\n"), no_map);
   EXPECT_EQ(error(std::string(100000, 'x')), no_map);
-  EXPECT_NE(errorOf([&] { readAll(folder.str()); }), "");
+  EXPECT_EQ(errorOf([&] { readAll(folder.str()); }),
+            folder.str() + ": is a folder, expected a map file");
   EXPECT_NE(errorOf([&] { readAll(folder / "none"); }).find("cannot be opened"), std::string::npos);
   change(folder / "other", "CREATE TABLE state(id INTEGER PRIMARY KEY)");
   EXPECT_EQ(errorOf([&] { readAll(folder / "other"); }),

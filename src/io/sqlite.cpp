@@ -3,6 +3,9 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "posefusion/core/error.hpp"
 
 namespace pf {
@@ -98,6 +101,10 @@ std::string_view SqliteStatement::blob(int column) const {
 
 SqliteDatabase::SqliteDatabase(const std::string& path, Access access)
     : path_(path), database_(nullptr, sqlite3_close_v2) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path + ": is a folder, expected a map file");
+  }
   sqlite3* database = nullptr;
   const int code =
       sqlite3_open_v2(path.c_str(), &database, flagsOf(access) | SQLITE_OPEN_FULLMUTEX, nullptr);
