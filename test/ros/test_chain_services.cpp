@@ -70,10 +70,10 @@ TEST_F(ChainServices, SettingsChangeBetweenFramesAndAreToldToAll) {
   EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::BLURRED);
   ASSERT_TRUE(set("blur_gate", "blur/threshold", 0));
   EXPECT_EQ(outcome(process(2)), TrackingStatusMsg::FUSED);
-  ASSERT_TRUE(set("fusion", "tracking/min_valid_fraction", 1.0));
+  ASSERT_TRUE(set("fusion", "tracking/min_view_fraction", 1.0));
   EXPECT_EQ(outcome(process(3)), TrackingStatusMsg::NO_DEPTH);
   double on_server = 0;
-  EXPECT_TRUE(ros::param::get(chain.space() + "/fusion/tracking/min_valid_fraction", on_server));
+  EXPECT_TRUE(ros::param::get(chain.space() + "/fusion/tracking/min_view_fraction", on_server));
   EXPECT_EQ(on_server, 1.0);
 }
 
