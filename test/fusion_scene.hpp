@@ -46,6 +46,14 @@ inline std::size_t countNear(const SurfelMap& map, double z, double tolerance = 
       all.begin(), all.end(), [&](float value) { return std::abs(value - z) < tolerance; }));
 }
 
+inline std::size_t stableNear(const SurfelMap& map, double z) {
+  std::size_t count = 0;
+  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+    count += map.isStable(s, i) && std::abs(s.z[i] - z) < 0.05 ? 1 : 0;
+  });
+  return count;
+}
+
 /// Fuses `frame` from `pose` so often.
 inline void fuseOften(int times, const WorkingFrame& frame, SurfelMap& map,
                       const FusionOptions& options = {},

@@ -42,14 +42,6 @@ TEST(Fuser, TheSameViewAgainAddsSupportAndNoSurfels) {
   EXPECT_EQ(map.stableCount(), size);
 }
 
-std::size_t stableNear(const SurfelMap& map, double z) {
-  std::size_t count = 0;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-    count += map.isStable(s, i) && std::abs(s.z[i] - z) < 0.05 ? 1 : 0;
-  });
-  return count;
-}
-
 TEST(Fuser, WhatComesBeforeAKnownWallIsStableOnlyLater) {
   SurfelMap map{MapConfig{}};
   fuseOften(10, scene(3.0), map);

@@ -149,14 +149,6 @@ WorkingFrame withoutFound(WorkingFrame frame) {
   return frame;
 }
 
-std::size_t stableNear(const SurfelMap& map, double z) {
-  std::size_t count = 0;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-    count += map.isStable(s, i) && std::abs(s.z[i] - z) < 0.05 ? 1 : 0;
-  });
-  return count;
-}
-
 TEST(SurfelUpdate, WhatIsSeenCloseToPeopleStays) {
   SurfelMap map{MapConfig{}};
   fuseOften(40, withoutFound(scene(3.0, 1.5)), map, foundAt(1.5));
