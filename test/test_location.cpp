@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
+
 namespace pf {
 namespace {
 
@@ -49,6 +51,54 @@ TEST(MayBeNew, WhomNoMaskShowsIsNotAskedForOne) {
   EXPECT_TRUE(joints.mayBeNew(Background::agrees)[1]);
   joints.shown = {};
   EXPECT_EQ(pf::mayBeNew(joints.people, joints.shown, {}), (std::vector<bool>{true, true}));
+}
+
+/// Somebody carried before a wall 2 m away that the map knows, and a detection of four joints that
+/// lies on the wall beside.
+struct Carried {
+  Evidence evidence;
+  TrackedPerson tracked;
+
+  Carried() {
+    RgbdFrame frame{1, cv::Mat(30, 40, CV_8UC3, cv::Scalar(0, 0, 0)),
+                    cv::Mat(30, 40, CV_32FC1, cv::Scalar(2.0F)), 1e-3,
+                    PinholeCamera{40, 30, 33, 33, 19.5, 14.5, {}}};
+    frame.depth(cv::Rect(5, 5, 8, 20)).setTo(1.4F);
+    sampleGrid(frame, frame.depth, 40, evidence.grid);
+    evidence.background.assign(evidence.grid.size(), Background::agrees);
+    evidence.flatness.assign(evidence.grid.size(), Flatness::none);
+    for (int v = 5; v < 25; ++v) {
+      for (int u = 5; u < 13; ++u) {
+        tracked.cells.push_back(v * 40 + u);
+        evidence.background[v * 40 + u] = Background::nearer;
+      }
+    }
+    tracked.id = 7;
+    tracked.depth_m = 1.4F;
+    tracked.fresh = true;
+    tracked.detection = 0;
+    for (int i = 0; i < 4; ++i) tracked.person.joints[i] = {30.0F, 6.0F + 5.0F * i, 0.5F};
+  }
+};
+
+TEST(LocatePerson, AFewJointsOnTheWallDoNotEndWhomTheMapShowsBeforeIt) {
+  Carried carried;
+  EXPECT_TRUE(locatePerson(carried.evidence, 30, carried.tracked));
+  EXPECT_FALSE(carried.tracked.in_map);
+  EXPECT_EQ(carried.tracked.body.anchors.size(), carried.tracked.cells.size());
+  EXPECT_EQ(carried.tracked.depth_m, 1.4F);
+}
+
+TEST(LocatePerson, WhoseMaskLiesOnTheWallTooIsAThingOfTheMap) {
+  Carried wall;
+  wall.evidence.background.assign(wall.evidence.grid.size(), Background::agrees);
+  EXPECT_FALSE(locatePerson(wall.evidence, 30, wall.tracked));
+}
+
+TEST(LocatePerson, WhoIsNewAndLiesOnTheWallIsAThingOfTheMap) {
+  Carried fresh;
+  fresh.tracked.cells.clear();
+  EXPECT_FALSE(locatePerson(fresh.evidence, 30, fresh.tracked));
 }
 
 }  // namespace

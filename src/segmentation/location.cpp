@@ -18,6 +18,10 @@ constexpr float kShownNew = 0.5F;      // probability of the cells that are aske
 constexpr float kKnownNew = 0.5F;      // the map knows this part of them at least ...
 constexpr float kNearerNew = 0.8F;     // ... and this part of those stands before it
 
+// Somebody carried whom the map shows.
+constexpr float kConfirmedKnown = 0.5F;   // the map knows this part of the mask's cells ...
+constexpr float kConfirmedNearer = 0.7F;  // ... and this part of those stands before it
+
 // A person who is part of the map by mistake.
 constexpr double kInMapFrames = 10;     // for so long after a sure detection
 constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
@@ -53,10 +57,28 @@ std::vector<int> shownCells(const std::vector<int>& sure, float depth_m, const S
   return cells;
 }
 
-/// The line to a joint that is hidden crosses what hides it: seeds there are none.
+/// Removes the cells of which the condition holds.
 template <typename Condition>
 void dropCells(const Condition& condition, std::vector<int>& cells) {
   cells.erase(std::remove_if(cells.begin(), cells.end(), condition), cells.end());
+}
+
+/// The person's body by the joints and the detector's mask, without seeds on what hides the person.
+void liftDetected(const Evidence& evidence, TrackedPerson& tracked) {
+  const std::vector<int> sure = evidence.shown.sureCells(tracked.detection, evidence.grid);
+  const float shown_depth_m = medianDepthOf(sure, evidence.grid);
+  tracked.body =
+      liftPerson(tracked.person, evidence.grid, tracked.fresh ? shown_depth_m : tracked.depth_m);
+  Body& body = tracked.body;
+  if (body.depth_m <= 0.0F) body.depth_m = shown_depth_m;
+  body.shown = shownCells(sure, shown_depth_m, evidence.grid);
+  const bool is_shown = !body.shown.empty();
+  const auto hides = [&](int cell) {
+    return evidence.flatness[cell] == Flatness::small ||
+           (is_shown && isDenied(evidence.shown, cell));
+  };
+  dropCells(hides, body.seeds);
+  dropCells(hides, body.shown);
 }
 
 }  // namespace
@@ -92,23 +114,24 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
   return may_be_new;
 }
 
+bool standsBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background) {
+  const MapVote vote = voteOf(cells, background);
+  return vote.known > kConfirmedKnown * static_cast<float>(cells.size()) &&
+         vote.nearer > kConfirmedNearer * vote.known;
+}
+
 bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {
-  const std::vector<int> sure = evidence.shown.sureCells(tracked.detection, evidence.grid);
-  const float shown_depth_m = medianDepthOf(sure, evidence.grid);
-  tracked.body =
-      liftPerson(tracked.person, evidence.grid, tracked.fresh ? shown_depth_m : tracked.depth_m);
+  liftDetected(evidence, tracked);
   Body& body = tracked.body;
-  body.shown = shownCells(sure, shown_depth_m, evidence.grid);
-  const bool is_shown = !body.shown.empty();
-  const auto hides = [&](int cell) {
-    return evidence.flatness[cell] == Flatness::small ||
-           (is_shown && isDenied(evidence.shown, cell));
-  };
-  dropCells(hides, body.seeds);
-  dropCells(hides, body.shown);
   MapVote vote = voteOf(body.seeds, evidence.background);
   vote += voteOf(body.shown, evidence.background);
   const bool in_map = vote.known >= kMinKnownSeeds && vote.agrees > kInMapPart * vote.known;
+  if (in_map && tracked.fresh && standsBeforeMap(tracked.cells, evidence.background)) {
+    // A detection on the wall beside: the carried mask knows better where the person is.
+    body = Body();
+    tracked.fresh = false;
+    tracked.detection = -1;
+  }
   if (tracked.fresh) tracked.in_map = in_map && isSure(tracked.person);
   if (tracked.unseen > kInMapFrames) tracked.in_map = false;
   if (in_map && tracked.fresh && !tracked.in_map) return false;
@@ -121,7 +144,7 @@ bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tra
   if (tracked.unseen > carry_frames) return false;
   body.anchors.insert(body.anchors.end(), body.shown.begin(), body.shown.end());
   if (body.seeds.empty() && body.anchors.size() < kMinMaskCells) return false;
-  if (body.depth_m <= 0.0F) body.depth_m = shown_depth_m > 0.0F ? shown_depth_m : tracked.depth_m;
+  if (body.depth_m <= 0.0F) body.depth_m = tracked.depth_m;
   body.anchors.insert(body.anchors.end(), body.seeds.begin(), body.seeds.end());
   tracked.depth_m = body.depth_m;
   return true;

@@ -25,8 +25,6 @@ constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
 constexpr double kAgeing = 1.0;
 constexpr double kConfirmedAgeing = 0.25;  // the map shows that somebody stands before it
 constexpr double kBlindAgeing = 3.0;       // no map: the mask may leak into furniture unnoticed
-constexpr float kConfirmedKnown = 0.5F;    // confirmed: the map knows this part of the mask's cells
-constexpr float kConfirmedNearer = 0.7F;   // ... and this part of those stands before it
 
 constexpr double kMarginWidth_px = 640.0;  // image width that margin_px is given for
 
@@ -136,10 +134,7 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
     if (owner >= 0) people[owner].cells.push_back(cell);
   }
   for (TrackedPerson& tracked : people) {
-    const MapVote vote = voteOf(tracked.cells, evidence.background);
-    const float cells = static_cast<float>(tracked.cells.size());
-    const bool confirmed =
-        vote.known > kConfirmedKnown * cells && vote.nearer > kConfirmedNearer * vote.known;
+    const bool confirmed = standsBeforeMap(tracked.cells, evidence.background);
     const bool blind = !with_map && !tracked.fresh;
     tracked.unseen += confirmed ? kConfirmedAgeing : blind ? kBlindAgeing : kAgeing;
     fadeLostJoints(evidence.grid, labels, tracked.person);

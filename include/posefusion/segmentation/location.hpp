@@ -25,6 +25,9 @@ struct MapVote {
 
 MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background);
 
+/// The map confirms a carried mask: it knows most of the cells, and most of those stand before it.
+bool standsBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background);
+
 /// Which detections are believed to be somebody new: all whom no mask shows (a network of joints
 /// found them), and those a detector is sure of; of the others, part of a body at the border of the
 /// picture say, those that stand before the map where nothing stood.
@@ -33,7 +36,8 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
 
 /// Finds a person's place in the scene from the joints, the detector's mask, the carried mask and
 /// the map. False: there is none, or it is a thing that the map holds, or the person was last
-/// detected too long ago (`carry_frames`).
+/// detected too long ago (`carry_frames`). A detection that lies on the map does not end a carried
+/// person who stands before it: it is forgotten.
 bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked);
 
 }  // namespace pf
