@@ -117,13 +117,13 @@ TEST(EmbeddedDetector, DoesNotDependOnThreads) {
             0);
 }
 
-TEST(PoseConfig, TheEmbeddedModelIsTheDefaultUntilANetworkIsNamed) {
+TEST(PoseConfig, ANetworkThatIsNamedWorksBesideTheEmbeddedModel) {
   PoseConfig config;
   EXPECT_EQ(chosenDetector(config), kDefaultDetector);
   config.model = "some.pb";
-  EXPECT_EQ(chosenDetector(config), "network");
-  config.detector = "network+embedded";
   EXPECT_EQ(chosenDetector(config), "network+embedded");
+  config.detector = "network";
+  EXPECT_EQ(chosenDetector(config), "network");
 }
 
 /// The weights that come with the package are whole and see nobody where there is nothing.

@@ -9,6 +9,8 @@ namespace pf {
 
 /// The detector where neither it nor a pose network is named.
 constexpr const char* kDefaultDetector = "embedded";
+/// The detector where a pose network is named alone.
+constexpr const char* kDefaultWithNetwork = "network+embedded";
 
 /// Settings of the pose detector.
 struct PoseConfig {
@@ -36,7 +38,7 @@ inline void visitFields(PoseConfig& c, FieldVisitor& v) {
   v.choice("detector", c.detector,
            {"auto", "embedded", "network", "network+embedded", "recorded", "none"},
            "where people come from: the package's own model of depth, a pose network, both, People "
-           "recorded with the input, or nowhere; auto: network where `model` names one, else "
+           "recorded with the input, or nowhere; auto: both where `model` names a network, else "
            "embedded");
   v.text("model", c.model,
          "weights of the pose network (.pb, .caffemodel, .onnx), its settings in the "
@@ -50,7 +52,7 @@ inline void visitFields(PoseConfig& c, FieldVisitor& v) {
 /// The detector that the settings choose: never "auto".
 inline std::string chosenDetector(const PoseConfig& c) {
   if (c.detector != "auto") return c.detector;
-  return c.model.empty() ? kDefaultDetector : "network";
+  return c.model.empty() ? kDefaultDetector : kDefaultWithNetwork;
 }
 
 }  // namespace pf
