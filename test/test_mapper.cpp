@@ -49,7 +49,7 @@ TEST_F(MapperTest, CovarianceIsPositiveAndSmallInARoom) {
 
 TEST_F(MapperTest, AGapBetweenPeopleIsNotEnoughToTrackBy) {
   for (const auto& [width, outcome] :
-       {std::pair{22, FrameOutcome::no_depth}, std::pair{48, FrameOutcome::fused}}) {
+       {std::pair{22, FrameOutcome::no_depth}, std::pair{140, FrameOutcome::fused}}) {
     Mapper mapper(config());
     for (int i = 0; i < 10; ++i) mapper.process({room().frame(i).frame, {}, {}});
     const TrueFrame truth = room().frame(10);

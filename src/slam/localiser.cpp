@@ -55,11 +55,11 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   location.carried = carried_;
   Verdict verdict;
   location.tracking = align(frame, prior, location.motion, render.model, verdict);
+  if (verdict.outcome == FrameOutcome::fused) {
+    verdict = askFurther(frame, location, prior, {stamp_ns, forced}, render.view);
+  }
   if (forced && verdict.outcome == FrameOutcome::fused) {
     verdict = {FrameOutcome::forced, "too blurred to be fused"};
-  }
-  if (verdict.outcome == FrameOutcome::fused) {
-    verdict = askFurther(frame, location, prior, stamp_ns, render.view);
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;

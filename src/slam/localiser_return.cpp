@@ -22,6 +22,24 @@ constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 // After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
 // it, and one frame is little to go by.
 constexpr double kMaxBlind_s = 0.25, kMaxBlind_m = 0.15;
+// A turn blurs frames too, but does not take the camera so far until one is looked at (0.2 s). In
+// a fall a blurred frame fits the map at more places than its own, and its corners are not good.
+constexpr double kMaxForcedWay_m = 0.12;
+
+// Where people leave no more of the picture than this, the camera has to be known as well as at a
+// place that was searched. Of what is left to see, corners often tell alone, and some lie on people
+// who were missed.
+constexpr double kLittleView = 0.4;
+
+/// Says how badly a pose is known that little of the picture tells of; empty: well enough.
+std::string poorlyKnown(const WorkingFrame& frame, const TrackingResult& tracking) {
+  if (frame.valid_pixels >= kLittleView * static_cast<double>(frame.depth_m.total())) return {};
+  const double sigma_m = positionSigma(tracking);
+  if (sigma_m <= VerifyLimits().max_sigma_m) return {};
+  char text[48];
+  std::snprintf(text, sizeof text, "little in view, known to %.3f m", sigma_m);
+  return text;
+}
 
 /// The pose of an alignment, asked as strictly as a place that was searched.
 PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracking,
@@ -36,11 +54,20 @@ PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracki
 }  // namespace
 
 Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& location,
-                              const PosePrior& prior, std::int64_t stamp_ns,
+                              const PosePrior& prior, const Moment& moment,
                               const ViewRenderer& render) const {
   const TrackingResult& tracking = location.tracking;
-  const double blind_s = 1e-9 * static_cast<double>(stamp_ns - seen_ns_);
+  const bool is_lost = state_ == TrackingState::lost;  // prove() has its own questions
+  const std::string poorly = is_lost ? "" : poorlyKnown(frame, tracking);
+  if (!poorly.empty()) return {FrameOutcome::degenerate, poorly};
+  const double blind_s = 1e-9 * static_cast<double>(moment.stamp_ns - seen_ns_);
   const Eigen::Vector3d way = tracking.T_map_camera.translation() - T_map_located_.translation();
+  if (moment.forced) {
+    const bool is_blind = !location.motion.found && blind_s > kMaxBlind_s;
+    const bool is_far = way.norm() > kMaxForcedWay_m;
+    if (is_lost || (!is_blind && !is_far)) return {};
+    return {FrameOutcome::disagrees, "blurred, and far from the last pose"};
+  }
   const bool is_after_gap =
       state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m);
   const bool is_alone = !location.motion.found && !agree(prior.T_map_camera, tracking.T_map_camera);

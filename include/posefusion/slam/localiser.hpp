@@ -102,6 +102,11 @@ class Localiser {
     SmallImage small;
   };
 
+  struct Moment {
+    std::int64_t stamp_ns = 0;
+    bool forced = false;  ///< the frame is blurred
+  };
+
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
   PosePrior predict(const SparseMotion& motion, double elapsed_s) const;
@@ -111,11 +116,12 @@ class Localiser {
   void carry(const SparseMotion& motion);
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
-  /// What else is asked of a frame that tracking found good: after a gap, and where no corner tells
-  /// of a step, it has to pass what a searched place must pass. One plane (a ceiling, in a fall)
+  /// What else is asked of a frame that tracking found good. Where little is in view its position
+  /// has to be known as well as at a searched place; after a gap, and where no corner tells of a
+  /// step, it has to pass all that a searched place must pass: one plane (a ceiling, in a fall)
   /// slides as it likes.
   Verdict askFurther(const WorkingFrame& frame, const Location& location, const PosePrior& prior,
-                     std::int64_t stamp_ns, const ViewRenderer& render) const;
+                     const Moment& moment, const ViewRenderer& render) const;
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              const MapRenderers& render);
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
