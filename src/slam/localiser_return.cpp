@@ -57,15 +57,14 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
                               const PosePrior& prior, const Moment& moment,
                               const ViewRenderer& render) const {
   const TrackingResult& tracking = location.tracking;
-  const bool is_lost = state_ == TrackingState::lost;  // prove() has its own questions
-  const std::string poorly = is_lost ? "" : poorlyKnown(frame, tracking);
+  const std::string poorly = poorlyKnown(frame, tracking);
   if (!poorly.empty()) return {FrameOutcome::degenerate, poorly};
   const double blind_s = 1e-9 * static_cast<double>(moment.stamp_ns - seen_ns_);
   const Eigen::Vector3d way = tracking.T_map_camera.translation() - T_map_located_.translation();
   if (moment.forced) {
     const bool is_blind = !location.motion.found && blind_s > kMaxBlind_s;
     const bool is_far = way.norm() > kMaxForcedWay_m;
-    if (is_lost || (!is_blind && !is_far)) return {};
+    if (state_ == TrackingState::lost || (!is_blind && !is_far)) return {};
     return {FrameOutcome::disagrees, "blurred, and far from the last pose"};
   }
   const bool is_after_gap =
