@@ -211,6 +211,7 @@ RgbdFrame photo(const std::string& name) {
 
 PoseConfig networkConfig(int every_nth_frame) {
   PoseConfig config;
+  config.detector = "network";
   config.model = modelPath();
   config.every_nth_frame = every_nth_frame;
   return config;

@@ -222,6 +222,7 @@ TEST(Segmenter, FivePeople) {
   RgbdFrame frame{1, {}, cv::imread(folder + "/depth.png", cv::IMREAD_UNCHANGED), 1e-3, kCamera};
   cv::cvtColor(cv::imread(folder + "/color.png"), frame.color, cv::COLOR_BGR2RGB);
   PoseConfig pose;
+  pose.detector = "network";
   pose.model = model.string();
   const People people = makePoseDetector(pose, {})->detect(frame);
   EXPECT_EQ(people.people.size(), 5U);
