@@ -15,12 +15,11 @@ constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask a
 // Somebody new, by a detector that gives a mask with every frame.
 constexpr float kSureNewScore = 0.7F;  // believed without the map
 constexpr float kShownNew = 0.5F;      // probability of the cells that are asked about
-constexpr float kKnownNew = 0.5F;      // the map knows this part of them at least ...
-constexpr float kNearerNew = 0.8F;     // ... and this part of those stands before it
+constexpr float kNearerNew = 0.8F;     // of those that the map knows, this part stands before it
 
-// Somebody carried whom the map shows.
-constexpr float kConfirmedKnown = 0.5F;   // the map knows this part of the mask's cells ...
-constexpr float kConfirmedNearer = 0.7F;  // ... and this part of those stands before it
+// Who stands before the map.
+constexpr float kKnownBefore = 0.5F;   // it knows this part of the cells ...
+constexpr float kNearerBefore = 0.7F;  // ... of which this part stands before it, of a carried mask
 
 // A person who is part of the map by mistake.
 constexpr double kInMapFrames = 10;     // for so long after a sure detection
@@ -81,6 +80,13 @@ void liftDetected(const Evidence& evidence, TrackedPerson& tracked) {
   dropCells(hides, body.shown);
 }
 
+bool areBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background,
+                  float nearer_part) {
+  const MapVote vote = voteOf(cells, background);
+  return vote.known > kKnownBefore * static_cast<float>(cells.size()) &&
+         vote.nearer > nearer_part * vote.known;
+}
+
 }  // namespace
 
 MapVote voteOf(const std::vector<int>& cells, const std::vector<Background>& background) {
@@ -105,19 +111,15 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
   }
   std::vector<bool> may_be_new;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const MapVote vote = voteOf(cells[i], background);
-    const bool before_map = cells[i].size() >= kMinMaskCells &&
-                            vote.known > kKnownNew * static_cast<float>(cells[i].size()) &&
-                            vote.nearer > kNearerNew * vote.known;
+    const bool before_map =
+        cells[i].size() >= kMinMaskCells && areBeforeMap(cells[i], background, kNearerNew);
     may_be_new.push_back(!in_mask[i] || detected.people[i].score >= kSureNewScore || before_map);
   }
   return may_be_new;
 }
 
 bool standsBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background) {
-  const MapVote vote = voteOf(cells, background);
-  return vote.known > kConfirmedKnown * static_cast<float>(cells.size()) &&
-         vote.nearer > kConfirmedNearer * vote.known;
+  return areBeforeMap(cells, background, kNearerBefore);
 }
 
 bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {

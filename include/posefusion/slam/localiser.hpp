@@ -102,6 +102,7 @@ class Localiser {
     SmallImage small;
   };
 
+  /// Of a frame: when it was taken, and whether it is sharp.
   struct Moment {
     std::int64_t stamp_ns = 0;
     bool forced = false;  ///< the frame is blurred
