@@ -62,6 +62,14 @@ TEST_F(JudgeTest, WithoutCornersNoDirectionMayBeFree) {
   EXPECT_EQ(judged(0.01), FrameOutcome::degenerate);
 }
 
+TEST_F(JudgeTest, AtTheRimOfTheMapNoDirectionMayBeFree) {
+  // In a fall the last of the map leaves the view, and too few corners tell of so fast a motion.
+  show(0.25);
+  EXPECT_EQ(judged(0.01), FrameOutcome::fused);
+  result_.free_directions = 1;
+  EXPECT_EQ(judged(0.01), FrameOutcome::degenerate);
+}
+
 TEST_F(JudgeTest, WhatIsSeenThroughIsNotThere) {
   result_.seen_through = result_.candidates / 2;
   EXPECT_EQ(judged(0.0), FrameOutcome::seen_through);

@@ -66,6 +66,10 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
     return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
   }
   if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
+  if (r.free_directions > 0 && r.candidates < kStrongOverlap * frame.valid_pixels) {
+    return {FrameOutcome::degenerate,
+            percentOf(r.candidates, frame.valid_pixels, "of the frame in the map")};
+  }
   const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
   if (agree(prior.T_map_camera, r.T_map_camera)) return {};
   const std::string text = stepText(difference, "from the prediction");
