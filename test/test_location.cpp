@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 namespace pf {
@@ -35,6 +36,25 @@ TEST(MayBeNew, AChairSeenFromItsSideIsWeakToo) {
   chair.people.people[0].score = 0.6F;  // of a real one, in an empty kitchen
   EXPECT_FALSE(chair.mayBeNew(Background::agrees)[0]);
   EXPECT_FALSE(chair.mayBeNew(Background::unknown)[0]);
+}
+
+/// Of the cells of a weak detection so many stand before the map, so many agree with it, and the
+/// others lie on what it has seen for a few frames only.
+bool mayBeNew(std::size_t nearer, std::size_t agrees) {
+  Detections weak;
+  weak.people.people[0].score = 0.5F;
+  std::vector<Background> background(kCells, Background::recent);
+  std::fill_n(background.begin(), nearer, Background::nearer);
+  std::fill_n(background.begin() + nearer, agrees, Background::agrees);
+  return pf::mayBeNew(weak.people, weak.shown, background)[0];
+}
+
+TEST(MayBeNew, WhoWasMappedWhileComingInStandsBeforeTheMapInPart) {
+  EXPECT_TRUE(mayBeNew(5, 0));
+  EXPECT_TRUE(mayBeNew(5, 6)) << "an arm on the door post";
+  EXPECT_FALSE(mayBeNew(0, 0)) << "a chair that has just come into view";
+  EXPECT_FALSE(mayBeNew(2, 0)) << "its edge";
+  EXPECT_FALSE(mayBeNew(5, 12)) << "a chair that was turned a little";
 }
 
 TEST(MayBeNew, ASureDetectionNeedsNoMap) {

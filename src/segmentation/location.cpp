@@ -15,11 +15,15 @@ constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask a
 // Somebody new, by a detector that gives a mask with every frame.
 constexpr float kSureNewScore = 0.7F;  // believed without the map
 constexpr float kShownNew = 0.5F;      // probability of the cells that are asked about
-constexpr float kNearerNew = 0.8F;     // of those that the map knows, this part stands before it
+// Of those that the map knows, this part stands before it: the others may be on what was mapped of
+// them while they came in, which it has seen for a few frames only. Furniture that looks like
+// people agrees with it, and stands before it nowhere.
+constexpr float kNearerNew = 0.15F;
+constexpr float kMostAgreeingNew = 0.5F;
 
 // Who stands before the map.
 constexpr float kKnownBefore = 0.5F;   // it knows this part of the cells ...
-constexpr float kNearerBefore = 0.7F;  // ... of which this part stands before it, of a carried mask
+constexpr float kNearerBefore = 0.7F;  // ... of which this part stands before it
 
 // A person who is part of the map by mistake.
 constexpr double kInMapFrames = 10;     // for so long after a sure detection
@@ -80,11 +84,15 @@ void liftDetected(const Evidence& evidence, TrackedPerson& tracked) {
   dropCells(hides, body.shown);
 }
 
-bool areBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background,
-                  float nearer_part) {
+bool isKnown(const MapVote& vote, const std::vector<int>& cells) {
+  return vote.known > kKnownBefore * static_cast<float>(cells.size());
+}
+
+/// Whether something has come where the map knew another surface.
+bool cameBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background) {
   const MapVote vote = voteOf(cells, background);
-  return vote.known > kKnownBefore * static_cast<float>(cells.size()) &&
-         vote.nearer > nearer_part * vote.known;
+  return cells.size() >= kMinMaskCells && isKnown(vote, cells) &&
+         vote.nearer > kNearerNew * vote.known && vote.agrees < kMostAgreeingNew * vote.known;
 }
 
 }  // namespace
@@ -111,15 +119,15 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
   }
   std::vector<bool> may_be_new;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool before_map =
-        cells[i].size() >= kMinMaskCells && areBeforeMap(cells[i], background, kNearerNew);
-    may_be_new.push_back(!in_mask[i] || detected.people[i].score >= kSureNewScore || before_map);
+    may_be_new.push_back(!in_mask[i] || detected.people[i].score >= kSureNewScore ||
+                         cameBeforeMap(cells[i], background));
   }
   return may_be_new;
 }
 
 bool standsBeforeMap(const std::vector<int>& cells, const std::vector<Background>& background) {
-  return areBeforeMap(cells, background, kNearerBefore);
+  const MapVote vote = voteOf(cells, background);
+  return isKnown(vote, cells) && vote.nearer > kNearerBefore * vote.known;
 }
 
 bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {
