@@ -55,8 +55,9 @@ class Maps(Runs):
     def loop_counts(self, name, loops):
         """A row of Table IV of the paper."""
         refused = ", ".join(f"{count} {why}" for why, count in loops["refused"].items() if count > 0)
-        self.fact(f"{name}: ferns stored (not static), loops accepted; refused", None,
-                  f"{loops['ferns']} ({loops['ferns_not_static']}), {loops['accepted']}; {refused or 'none'}")
+        self.fact(f"{name}: ferns stored (not static), loops accepted (of them local); refused", None,
+                  f"{loops['ferns']} ({loops['ferns_not_static']}), {loops['accepted']} "
+                  f"({loops['accepted_local']}); {refused or 'none'}")
 
     def modes(self):
         """Table IV: ferns and loops of the three modes, people recorded."""

@@ -86,6 +86,20 @@ TEST(LoopCloser, ComingBackGivesTrueConstraints) {
   const LoopCounts& c = closer.counts();
   EXPECT_EQ(c.accepted, loops.size());
   EXPECT_EQ(c.accepted + c.allRefused(), c.compared);
+  EXPECT_GT(c.local, 0U);
+  EXPECT_LE(c.local, c.accepted);
+}
+
+TEST(LoopCloser, FarByItsPoseAPlaceIsFoundByItsPicture) {
+  LoopCloser closer(quick(), TrackingConfig{});
+  Eigen::Isometry3d drift = Eigen::Isometry3d::Identity();
+  drift.translation().x() = 2 * quick().near_m;
+  const auto loops = comeBack(closer, drift);
+  ASSERT_FALSE(loops.empty());
+  EXPECT_EQ(loops[0].from, 0);
+  EXPECT_LT((loops[0].T_from_to.translation()).norm(), 0.02);
+  EXPECT_EQ(closer.counts().accepted, loops.size());
+  EXPECT_EQ(closer.counts().local, 0U);
 }
 
 TEST(LoopCloser, ComparesNoMoreThanIsEnough) {

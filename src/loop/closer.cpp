@@ -86,7 +86,8 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates() const {
     const Eigen::Isometry3d step =
         keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
     const double turn = angleOf(step), shift = step.translation().norm();
-    if (shift < config_.near_m && turn < kNearTurn_rad) found.push_back({i, shift + turn, step});
+    if (shift < config_.near_m && turn < kNearTurn_rad)
+      found.push_back({i, shift + turn, step, true});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.far < b.far; });
@@ -155,7 +156,6 @@ std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id,
     ++counts_.one_way;
     return std::nullopt;
   }
-  ++counts_.accepted;
   return LoopConstraint{id, keyframes_.back().view.id, T, forth.alignment.covariance};
 }
 
@@ -171,7 +171,11 @@ std::vector<LoopConstraint> LoopCloser::findLoops() {
     const bool known = std::any_of(loops.begin(), loops.end(),
                                    [&](const LoopConstraint& loop) { return loop.from == id; });
     if (known) continue;
-    if (const auto loop = verify(candidate)) loops.push_back(*loop);
+    const auto loop = verify(candidate);
+    if (!loop) continue;
+    ++counts_.accepted;
+    counts_.local += candidate.is_local ? 1 : 0;
+    loops.push_back(*loop);
   }
   return loops;
 }

@@ -61,6 +61,7 @@ LoopConstraintMsg toWire(const LoopAnswerMessage& message) {
   wire.ferns = answer.counts.ferns;
   wire.compared = answer.counts.compared;
   wire.accepted = answer.counts.accepted;
+  wire.local = answer.counts.local;
   wire.searched = answer.counts.searched;
   wire.places = answer.counts.found;
   return wire;

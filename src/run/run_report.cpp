@@ -57,6 +57,7 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
           {"ferns_not_static", c.not_static},
           {"compared", c.compared},
           {"accepted", c.accepted},
+          {"accepted_local", c.local},
           {"corrections", corrections.accepted},
           {"fragments_joined", corrections.joined},
           {"refused", refused},

@@ -27,6 +27,7 @@ struct LoopCounts {
   std::size_t not_static = 0;  ///< keyframes whose ferns the static-view rule kept out
   std::size_t compared = 0;    ///< pairs that were verified
   std::size_t accepted = 0;
+  std::size_t local = 0;  ///< of the accepted: of keyframes near by the poses; the rest is global
   std::array<std::size_t, kPlaceDoubts> refused{};  ///< by PlaceDoubt
   std::size_t one_way = 0;                          ///< refused: the two directions do not agree
   std::size_t turned = 0;                           ///< refused: the pictures look different ways
@@ -76,6 +77,7 @@ class LoopCloser {
     std::size_t index = 0;
     double far = 0;  ///< by the poses, m and rad together
     Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();  ///< guess
+    bool is_local = false;  ///< near by the poses, not only by the picture
   };
 
   std::vector<Candidate> candidates() const;
