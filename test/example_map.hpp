@@ -4,6 +4,7 @@
 #include <string>
 
 #include "posefusion/io/map_database.hpp"
+#include "temporary_folder.hpp"
 
 namespace pf {
 
@@ -79,5 +80,20 @@ struct ExampleMap {
     update.blobs = {{"ferns", std::string("\0\1\2", 3)}, {"empty", ""}};
   }
 };
+
+/// A new map file with this in it; returns its path.
+inline std::string saved(const TemporaryFolder& folder, const MapUpdate& update,
+                         const std::string& name = "map.pfdb") {
+  MapWriter(folder / name, MapWriter::Mode::create).write(update);
+  return folder / name;
+}
+
+/// All that a map file holds.
+inline void readAll(const std::string& path) {
+  const MapReader reader(path);
+  const MapContent content = reader.content();
+  reader.surfels();
+  for (const Keyframe& k : content.keyframes) reader.images(k.id);
+}
 
 }  // namespace pf

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Map files that are no maps, are damaged, or whose writer had an accident.
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "example_map.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/map_database.hpp"
+#include "temporary_folder.hpp"
+
+namespace pf {
+namespace {
+
+/// Runs SQL on a file as another program would.
+void change(const std::string& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  char* error = nullptr;
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &error), SQLITE_OK) << error;
+  sqlite3_close(database);
+}
+
+/// What is said of a map after such a change. Written once: waiting for the disk takes long.
+std::string errorAfter(const std::string& sql) {
+  const TemporaryFolder folder;
+  static const std::string whole = readFile(saved(folder, ExampleMap().update));
+  const std::string path = folder.write("changed.pfdb", whole);
+  change(path, "PRAGMA synchronous=OFF; " + sql);
+  const std::string error = errorOf([&] { readAll(path); });
+  EXPECT_NE(error.find(path + ": "), std::string::npos) << sql << ": " << error;
+  return error;
+}
+
+TEST(MapDatabase, RefusesWhatIsNoMap) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& text) {
+    return errorOf([&] { readAll(folder.write("x", text)); });
+  };
+  const std::string no_map = folder / "x" + ": is no map of posefusion";
+  EXPECT_EQ(error(""), no_map);
+  EXPECT_EQ(error("ply\nformat binary_little_endian 1.0\n"), no_map);
+  EXPECT_EQ(error(std::string(100000, 'x')), no_map);
+  EXPECT_EQ(errorOf([&] { readAll(folder.str()); }),
+            folder.str() + ": is a folder, expected a map file");
+  EXPECT_NE(errorOf([&] { readAll(folder / "none"); }).find("cannot be opened"), std::string::npos);
+  change(folder / "other", "CREATE TABLE state(id INTEGER PRIMARY KEY)");
+  EXPECT_EQ(errorOf([&] { readAll(folder / "other"); }),
+            folder / "other" + ": is no map of posefusion");
+}
+
+TEST(MapDatabase, RefusesWhatAMapCannotHold) {
+  const auto said = [](const std::string& error, const std::string& text) {
+    return error.find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=2"), "a newer posefusion made it"));
+  EXPECT_TRUE(said(errorAfter("CREATE TABLE more(x)"), "other tables"));
+  EXPECT_TRUE(said(errorAfter("DROP TABLE blobs"), "other tables"));
+  EXPECT_TRUE(
+      said(errorAfter("DROP TABLE blocks; CREATE VIEW blocks AS SELECT 1 AS id"), "other tables"));
+  EXPECT_TRUE(said(errorAfter("DELETE FROM state"), "holds no map yet"));
+  EXPECT_TRUE(said(errorAfter("UPDATE state SET width=0"), "width"));
+  EXPECT_TRUE(said(errorAfter("UPDATE state SET intrinsics='x'"), "the camera has 1 bytes"));
+  EXPECT_TRUE(said(errorAfter("UPDATE state SET gain=1e999"), "brightness"));
+  EXPECT_TRUE(said(errorAfter("UPDATE state SET frame=3"), "keyframe 1 is of frame 5"));
+  EXPECT_TRUE(said(errorAfter("UPDATE state SET frame=1e15"), "number of frames"));
+  EXPECT_TRUE(said(errorAfter("UPDATE blocks SET surfels=zeroblob(60) WHERE id=1"), "checksum"));
+  EXPECT_TRUE(
+      said(errorAfter("UPDATE keyframes SET t_map_camera=zeroblob(96)"), "no rigid motion"));
+  EXPECT_TRUE(said(errorAfter("UPDATE keyframes SET id=9 WHERE id=1"), "its id is 9"));
+  EXPECT_TRUE(said(errorAfter("DELETE FROM keyframes WHERE id=1"), "relative to keyframe 1"));
+  EXPECT_TRUE(said(errorAfter("UPDATE constraints SET to_keyframe=5"), "constraint 0 -> 5"));
+  EXPECT_TRUE(said(errorAfter("UPDATE constraints SET covariance=zeroblob(288)"), "covariance"));
+  EXPECT_TRUE(said(errorAfter("UPDATE images SET grey=depth"), "an image of keyframe 0"));
+  EXPECT_TRUE(said(errorAfter("UPDATE images SET depth=x'00'"), "an image of keyframe 0"));
+}
+
+TEST(MapDatabase, RefusesSurfelsThatCannotBe) {
+  const TemporaryFolder folder;
+  ExampleMap example;
+  const auto error = [&](const std::string& name) {
+    const std::string path = saved(folder, example.update, name);
+    return errorOf([&] { readAll(path); });
+  };
+  SurfelArrays& s = example.update.blocks[0].surfels;
+  s.nx[3] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(error("a").find("not finite"), std::string::npos);
+  s.nx[3] = 0;
+  s.created[0] = 10;
+  EXPECT_NE(error("b").find("a surfel is of frame 10"), std::string::npos);
+}
+
+TEST(MapDatabase, ADamagedFileIsRefusedOrReadButNeverCrashes) {
+  const TemporaryFolder folder;
+  const std::string text = readFile(saved(folder, ExampleMap().update));
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::string damaged = text;
+    if (i % 4 == 0) {
+      damaged.resize(random() % text.size());
+    } else {
+      for (int k = 0; k < (i % 4 == 1 ? 1 : 50); ++k) {
+        // Every second one near the beginning, where the structure is.
+        const std::size_t at = random() % (k % 2 == 0 ? text.size() : 40000);
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << (random() % 8)));
+      }
+    }
+    const std::string path = folder.write("damaged", damaged);
+    try {
+      readAll(path);
+    } catch (const InputError& error) {
+      ++refused;
+      EXPECT_EQ(std::string(error.what()).rfind(path + ": ", 0), 0U) << error.what();
+    }
+  }
+  EXPECT_GT(refused, 120);
+}
+
+TEST(MapDatabase, AFullDiskLosesOnlyWhatDidNotFit) {
+  const TemporaryFolder folder;
+  ExampleMap example;
+  const std::string path = folder / "map.pfdb";
+  {
+    MapWriter writer(path, MapWriter::Mode::create);
+    writer.write(example.update);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, SIG_IGN);
+    rlimit full = before;
+    full.rlim_cur = 1'000'000;
+    setrlimit(RLIMIT_FSIZE, &full);
+    MapUpdate large = example.update;
+    large.blobs["large"] = std::string(3'000'000, 'x');
+    large.frame = 12;
+    const std::string error = errorOf([&] { writer.write(large); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(error.find(path + ": cannot be read or written"), std::string::npos) << error;
+    example.update.frames.clear();
+    example.update.frame = 11;
+    writer.write(example.update);
+  }
+  EXPECT_EQ(MapReader(path).content().frame, 11);
+  readAll(path);
+}
+
+/// Writes for ever, telling when the first is done.
+[[noreturn]] void writeForEver(const std::string& path, int told) {
+  ExampleMap example;
+  MapWriter writer(path, MapWriter::Mode::create);
+  for (;;) {
+    writer.write(example.update);
+    if (example.update.frame++ == 9 && write(told, "x", 1) != 1) _exit(1);
+    example.update.frames.resize(1);
+  }
+}
+
+TEST(MapDatabase, AKilledWriterLeavesAWholeMap) {
+  std::mt19937 random(9);
+  for (int i = 0; i < 12; ++i) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "map.pfdb";
+    int told[2];
+    ASSERT_EQ(pipe(told), 0);
+    const pid_t child = fork();
+    if (child == 0) writeForEver(path, told[1]);
+    char byte = 0;
+    ASSERT_EQ(read(told[0], &byte, 1), 1);
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    close(told[0]);
+    close(told[1]);
+    const std::string before = readFile(path);
+    {
+      const MapReader reader(path);
+      const MapContent content = reader.content();
+      EXPECT_EQ(static_cast<int>(content.frames.size()), content.frame + 1)
+          << "the trajectory and the number of frames were written together";
+      EXPECT_EQ(reader.surfels().size(), 4000U);
+    }
+    EXPECT_TRUE(readFile(path) == before);
+    MapWriter(path, MapWriter::Mode::extend).write(ExampleMap().update);
+    readAll(path);
+  }
+}
+
+}  // namespace
+}  // namespace pf
