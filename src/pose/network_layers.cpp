@@ -7,6 +7,7 @@
 #include <mutex>
 #include <opencv2/dnn/all_layers.hpp>
 
+#include "pointwise_layer.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -184,8 +185,11 @@ cv::Ptr<dnn::Layer> makeNormalization(dnn::LayerParams& params) {
 cv::Ptr<dnn::Layer> makeConvolution(dnn::LayerParams& params) {
   const bool single = !params.blobs.empty() && params.blobs[0].dims == 4 &&
                       params.blobs[0].total() == static_cast<std::size_t>(params.blobs[0].size[0]);
-  if (!is_reading || !single) return dnn::ConvolutionLayer::create(params);
-  return cv::makePtr<ChannelScale>(params);
+  if (is_reading && single) return cv::makePtr<ChannelScale>(params);
+  cv::Ptr<dnn::Layer> layer;
+  if (is_reading) layer = makePointwise(params);
+  if (!layer) layer = dnn::ConvolutionLayer::create(params);
+  return layer;
 }
 
 /// OpenCV's list of layers is the whole process's: ours are in it only while a network is read.

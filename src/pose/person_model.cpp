@@ -7,6 +7,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/pose/network_layers.hpp"
 
 namespace pf {
 namespace {
@@ -48,7 +49,7 @@ PersonModel::PersonModel(const std::string& path)
     throw InputError(where + " cannot be read; the package has it as models/person.onnx");
   }
   try {
-    backend_->net = cv::dnn::readNetFromONNX(path_);
+    backend_->net = readWithFastLayers([this] { return cv::dnn::readNetFromONNX(path_); });
   } catch (const cv::Exception& error) {
     throw InputError(where + " is no network that OpenCV can read (" + error.err + ")");
   }
