@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_measure_detector: how many simulated people a detector finds.
+// posefusion_measure_detector: how many simulated people a detector finds, and how long it takes.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stopwatch.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/pose/detector.hpp"
 #include "progress.hpp"
@@ -22,6 +24,13 @@ constexpr int kFewestJoints = 4;
 
 struct Count {
   int people = 0, found = 0, empty_frames = 0, empty_with_people = 0;
+  std::vector<double> times_ms;  ///< of the detector, frame by frame
+
+  void add(const Count& more) {
+    people += more.people, found += more.found;
+    empty_frames += more.empty_frames, empty_with_people += more.empty_with_people;
+    times_ms.insert(times_ms.end(), more.times_ms.begin(), more.times_ms.end());
+  }
 };
 
 bool has(const std::array<bool, kJointCount>& flags, Joint joint) {
@@ -95,7 +104,10 @@ Count measure(const std::string& name, const Options& options, PoseDetector& det
     simulation.jump();
     const SimulatedFrame frame = simulation.frame(i);
     if (frame.dropped) continue;
-    const bool wrong = judge(frame, detector.detect(frame.frame), count);
+    Stopwatch watch;
+    const People people = detector.detect(frame.frame);
+    count.times_ms.push_back(watch.lapMs());
+    const bool wrong = judge(frame, people, count);
     if (wrong && failures.rows < 12 * 300) failures.push_back(drawFrame(frame, simulation, 400));
     progress.update(static_cast<std::size_t>(i + 1));
   }
@@ -110,6 +122,14 @@ void print(const std::string& name, const Count& c) {
               c.empty_frames, percent(c.empty_with_people, c.empty_frames));
 }
 
+void printTime(std::vector<double> times_ms) {
+  if (times_ms.empty()) return;
+  const auto middle = times_ms.begin() + static_cast<std::ptrdiff_t>(times_ms.size() / 2);
+  std::nth_element(times_ms.begin(), middle, times_ms.end());
+  std::printf("a frame takes the detector %.2f ms in the median of %zu\n", *middle,
+              times_ms.size());
+}
+
 void measureAll(const Options& options) {
   const auto detector = makePoseDetector(options.config, {});
   Count total;
@@ -117,9 +137,9 @@ void measureAll(const Options& options) {
   for (const auto& name : options.scenarios) {
     const Count c = measure(name, options, *detector, failures);
     print(name, c);
-    total.people += c.people, total.found += c.found;
-    total.empty_frames += c.empty_frames, total.empty_with_people += c.empty_with_people;
+    total.add(c);
   }
+  printTime(std::move(total.times_ms));
   print("all", total);
   if (!options.failures_file.empty() && !failures.empty()) {
     savePng(options.failures_file, failures);
@@ -131,7 +151,7 @@ void measureAll(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a detector\n"
-      "finds 4 joints or more, and the empty frames in which it finds somebody.",
+      "finds 4 joints or more, the empty frames in which it finds somebody, and its time a frame.",
       "posefusion_measure_detector"};
   Options o;
   o.config.every_nth_frame = 1;
