@@ -7,7 +7,8 @@
 #include <mutex>
 #include <opencv2/dnn/all_layers.hpp>
 
-#include "pointwise_layer.hpp"
+#include "convolution_layers.hpp"
+#include "pointwise_kernel.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -28,11 +29,6 @@ void addUp(const float* x, int count, float origin, float* sum, float* square) {
       square[lane] += d * d;
     }
   }
-}
-
-POSEFUSION_SIMD_CLONES
-void applyLine(const float* x, int count, float factor, float offset, float* y) {
-  for (int i = 0; i < count; ++i) y[i] = x[i] * factor + offset;
 }
 
 /// y = (x - mean) / sqrt(variance + eps), each channel by itself, then scale, shift, activation.
@@ -106,7 +102,7 @@ class ChannelNormalization : public dnn::Layer {
     if (!scale_.empty()) factor *= scale_.at<float>(channel);
     double offset = -(mean + origin) * factor;
     if (!shift_.empty()) offset += shift_.at<float>(channel);
-    applyLine(x, count, static_cast<float>(factor), static_cast<float>(offset), y);
+    kernel::applyLine(x, count, static_cast<float>(factor), static_cast<float>(offset), y);
     if (activation_) {
       activation_->forwardSlice(y, y, count, static_cast<std::size_t>(count), channel, channel + 1);
     }
@@ -114,62 +110,6 @@ class ChannelNormalization : public dnn::Layer {
 
   double eps_;
   cv::Mat scale_, shift_;
-  cv::Ptr<dnn::ActivationLayer> activation_;
-};
-
-/// A convolution of one weight for each output channel. Where it has as many input channels, it
-/// scales them, which OpenCV's own takes long over; anything else goes to that.
-class ChannelScale : public dnn::Layer {
- public:
-  explicit ChannelScale(const dnn::LayerParams& params)
-      : convolution_(dnn::ConvolutionLayer::create(params)) {
-    setParamsFrom(params);
-  }
-
-  bool getMemoryShapes(const std::vector<dnn::MatShape>& inputs, int outputs_needed,
-                       std::vector<dnn::MatShape>& outputs,
-                       std::vector<dnn::MatShape>& internals) const override {
-    return convolution_->getMemoryShapes(inputs, outputs_needed, outputs, internals);
-  }
-
-  void finalize(cv::InputArrayOfArrays inputs, cv::OutputArrayOfArrays outputs) override {
-    convolution_->finalize(inputs, outputs);
-  }
-
-  bool setActivation(const cv::Ptr<dnn::ActivationLayer>& activation) override {
-    activation_ = activation;
-    return convolution_->setActivation(activation);
-  }
-
-  void forward(cv::InputArrayOfArrays inputs, cv::OutputArrayOfArrays outputs,
-               cv::OutputArrayOfArrays internals) override {
-    std::vector<cv::Mat> in, out;
-    inputs.getMatVector(in);
-    outputs.getMatVector(out);
-    if (in[0].size != out[0].size) {
-      convolution_->forward(inputs, outputs, internals);
-      return;
-    }
-    const int channels = in[0].size[1];
-    const auto planes = static_cast<std::size_t>(in[0].size[0] * channels);
-    const int count = static_cast<int>(in[0].total() / planes);
-    parallelFor(planes, kChannelsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t plane = begin; plane < end; ++plane) {
-        const int channel = static_cast<int>(plane) % channels;
-        const std::size_t offset = plane * static_cast<std::size_t>(count);
-        float* y = out[0].ptr<float>() + offset;
-        applyLine(in[0].ptr<float>() + offset, count, blobs[0].ptr<float>()[channel],
-                  blobs.size() > 1 ? blobs[1].ptr<float>()[channel] : 0.0F, y);
-        if (activation_) {
-          activation_->forwardSlice(y, y, count, static_cast<std::size_t>(count), channel,
-                                    channel + 1);
-        }
-      }
-    });
-  }
-
- private:
-  cv::Ptr<dnn::BaseConvolutionLayer> convolution_;
   cv::Ptr<dnn::ActivationLayer> activation_;
 };
 
@@ -183,13 +123,8 @@ cv::Ptr<dnn::Layer> makeNormalization(dnn::LayerParams& params) {
 }
 
 cv::Ptr<dnn::Layer> makeConvolution(dnn::LayerParams& params) {
-  const bool single = !params.blobs.empty() && params.blobs[0].dims == 4 &&
-                      params.blobs[0].total() == static_cast<std::size_t>(params.blobs[0].size[0]);
-  if (is_reading && single) return cv::makePtr<ChannelScale>(params);
-  cv::Ptr<dnn::Layer> layer;
-  if (is_reading) layer = makePointwise(params);
-  if (!layer) layer = dnn::ConvolutionLayer::create(params);
-  return layer;
+  if (is_reading) return makeFastConvolution(params);
+  return dnn::ConvolutionLayer::create(params);
 }
 
 /// OpenCV's list of layers is the whole process's: ours are in it only while a network is read.

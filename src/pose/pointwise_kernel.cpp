@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "posefusion/core/parallel.hpp"
+
 namespace pf::kernel {
 namespace {
 
@@ -98,6 +100,11 @@ PointwiseWeights PointwiseWeights::packed(const float* weights, const float* bia
 void convolvePixels(const PointwiseWeights& weights, const float* in, std::size_t plane,
                     std::size_t begin, std::size_t end, float* out) {
   convolveBest(weights, in, plane, begin, end, out);
+}
+
+POSEFUSION_SIMD_CLONES
+void applyLine(const float* x, int count, float factor, float offset, float* y) {
+  for (int i = 0; i < count; ++i) y[i] = x[i] * factor + offset;
 }
 
 }  // namespace pf::kernel

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-/// Convolutions of 1x1 pixels on plain arrays: most of the work of a small network.
+/// What a small network does most, on plain arrays: convolutions of 1x1 pixels, and scales.
 namespace pf::kernel {
 
 /// Output channels that are summed at once, and the least pixels that can be.
@@ -26,5 +26,8 @@ struct PointwiseWeights {
 /// i in order: the same bits whatever the instruction set. Planes are `plane` floats apart.
 void convolvePixels(const PointwiseWeights& weights, const float* in, std::size_t plane,
                     std::size_t begin, std::size_t end, float* out);
+
+/// y = factor x + offset.
+void applyLine(const float* x, int count, float factor, float offset, float* y);
 
 }  // namespace pf::kernel
