@@ -126,6 +126,16 @@ TEST(PoseConfig, ANetworkThatIsNamedWorksBesideTheEmbeddedModel) {
   EXPECT_EQ(chosenDetector(config), "network");
 }
 
+TEST(PoseConfig, ANetworkLooksOftenerWhereItIsAlone) {
+  PoseConfig config;
+  config.model = "some.pb";
+  EXPECT_EQ(lookInterval_frames(config), kLookBeside_frames);
+  config.detector = "network";
+  EXPECT_EQ(lookInterval_frames(config), kLookAlone_frames);
+  config.every_nth_frame = 7;
+  EXPECT_EQ(lookInterval_frames(config), 7);
+}
+
 /// The weights that come with the package are whole and see nobody where there is nothing.
 TEST(PersonModel, ThePackagesOwnIsThere) {
   PersonModel model(packagedPersonModel());

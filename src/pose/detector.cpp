@@ -43,7 +43,7 @@ class NetworkDetector : public PoseDetector {
         peaks_(network_.settings().parts.size()) {}
 
   People detect(const RgbdFrame& frame) override {
-    const bool turn = frames_++ % config_.every_nth_frame == 0;
+    const bool turn = frames_++ % lookInterval_frames(config_) == 0;
     if (!turn) return {frame.stamp_ns, false, {}};
     const PoseMaps maps = network_.infer(frame.color);
     const auto& parts = network_.settings().parts;

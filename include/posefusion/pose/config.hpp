@@ -11,6 +11,9 @@ namespace pf {
 constexpr const char* kDefaultDetector = "embedded";
 /// The detector where a pose network is named alone.
 constexpr const char* kDefaultWithNetwork = "network+embedded";
+/// How often a pose network looks: alone, and beside the embedded model, which sees all frames.
+constexpr int kLookAlone_frames = 2;
+constexpr int kLookBeside_frames = 5;
 
 /// Settings of the pose detector.
 struct PoseConfig {
@@ -18,7 +21,7 @@ struct PoseConfig {
   std::string model;
   std::string embedded_model;
   int input_height_px = 0;
-  int every_nth_frame = 5;
+  int every_nth_frame = 0;
   double min_peak = 0.05;
   double min_person_score = 0.4;
   int min_person_joints = 3;
@@ -27,9 +30,9 @@ struct PoseConfig {
 
 inline void visitFields(PoseConfig& c, FieldVisitor& v) {
   v.integer(
-      "every_nth_frame", c.every_nth_frame, 1, 1000,
+      "every_nth_frame", c.every_nth_frame, 0, 1000,
       "the network sees every n-th sharp frame; people are carried between; the embedded model "
-      "sees all");
+      "sees all; 0 = every 2nd where the network is alone, every 5th beside the embedded model");
   v.number("min_peak", c.min_peak, 0.0, 1.0, "smallest heat-map value of a joint");
   v.number("min_person_score", c.min_person_score, 0.0, 1.0, "smallest mean score of a person");
   v.integer("min_person_joints", c.min_person_joints, 1, 18, "fewest joints of a person");
@@ -53,6 +56,12 @@ inline void visitFields(PoseConfig& c, FieldVisitor& v) {
 inline std::string chosenDetector(const PoseConfig& c) {
   if (c.detector != "auto") return c.detector;
   return c.model.empty() ? kDefaultDetector : kDefaultWithNetwork;
+}
+
+/// The network looks once in so many frames: at least 1.
+inline int lookInterval_frames(const PoseConfig& c) {
+  if (c.every_nth_frame > 0) return c.every_nth_frame;
+  return chosenDetector(c) == "network" ? kLookAlone_frames : kLookBeside_frames;
 }
 
 }  // namespace pf
