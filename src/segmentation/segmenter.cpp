@@ -182,7 +182,10 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   s.cut(config_);
   s.finish(frame, config_.margin_px, result);
   result.in_map_mask = s.inMapMask(frame, result.mask);
-  for (const TrackedPerson& tracked : s.people) result.people.people.push_back(tracked.person);
+  for (const TrackedPerson& tracked : s.people) {
+    result.people.people.push_back(tracked.person);
+    dropJointsOutside(s.evidence.grid, 0.0F, result.people.people.back());
+  }
   s.keepPeople(background != nullptr);
   return result;
 }

@@ -7,8 +7,11 @@
 namespace pf {
 namespace {
 
-constexpr int kMaskSamples = 30;            // points of each person's mask whose flow is measured
-constexpr float kMaxDeviation = 0.019F;     // of a joint's flow from its person's, in image widths
+constexpr int kMaskSamples = 30;         // points of each person's mask whose flow is measured
+constexpr float kMaxDeviation = 0.019F;  // of a joint's flow from its person's, in image widths
+// A carried joint that leaves the image still tells where the rest of its limb is; so far, in image
+// widths.
+constexpr float kReachOutside = 0.3F;
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints
 constexpr float kMissedJointFading = 0.6F;  // likelihood of a joint that a detection missed ...
 constexpr float kFrameFading = 0.93F;       // ... or, where every frame brings a detection, this,
@@ -84,13 +87,6 @@ void moveCells(const SceneGrid& grid, const cv::Point2f& flow_px, std::vector<in
   cells.resize(kept);
 }
 
-/// Joints outside the image, or nowhere (NaN), are not seen.
-void dropJointsOutside(const SceneGrid& grid, Person& person) {
-  for (Keypoint& joint : person.joints) {
-    if (grid.cellAt(joint.u, joint.v) < 0) joint = Keypoint();
-  }
-}
-
 /// Which of the carried people a detection continues, -1: none. `holder`: for each cell the person
 /// whose mask holds it, or -1.
 int findContinued(const Person& detected, const SceneGrid& grid, const std::vector<int>& holder,
@@ -128,9 +124,20 @@ void continuePerson(const Person& detected, bool with_every_frame, TrackedPerson
 
 }  // namespace
 
+void dropJointsOutside(const SceneGrid& grid, float margin_px, Person& person) {
+  const float right = static_cast<float>(grid.step * grid.cols) + margin_px;
+  const float bottom = static_cast<float>(grid.step * grid.rows) + margin_px;
+  for (Keypoint& joint : person.joints) {
+    const bool near =
+        joint.u >= -margin_px && joint.v >= -margin_px && joint.u < right && joint.v < bottom;
+    if (!near) joint = Keypoint();
+  }
+}
+
 void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people) {
-  const float max_deviation_px = kMaxDeviation * static_cast<float>(grid.step * grid.cols);
+  const auto width_px = static_cast<float>(grid.step * grid.cols);
+  const float max_deviation_px = kMaxDeviation * width_px;
   for (TrackedPerson& tracked : people) {
     tracked.fresh = false;
     tracked.detection = -1;
@@ -138,7 +145,7 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
     if (points.before.empty()) continue;
     follow(flow, points);
     moveJoints(points, max_deviation_px, tracked.person);
-    dropJointsOutside(grid, tracked.person);
+    dropJointsOutside(grid, kReachOutside * width_px, tracked.person);
     moveCells(grid, points.median_flow, tracked.cells);
   }
 }
@@ -151,7 +158,7 @@ void mergeDetections(const People& detected, const std::vector<bool>& may_be_new
   }
   for (std::size_t i = 0; i < detected.people.size(); ++i) {
     Person person = detected.people[i];
-    dropJointsOutside(grid, person);
+    dropJointsOutside(grid, 0.0F, person);
     const int continued = findContinued(person, grid, holder, people);
     if (continued < 0 && !may_be_new[i]) continue;
     if (continued < 0) {
