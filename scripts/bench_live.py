@@ -27,8 +27,9 @@ class Live(Runs):
         self.live_rows("walking_static, people recorded", self.simulated("walking_static", self.options.seeds[0]),
                        True, "detector:=recorded")
         self.live_rows("kitchen_people there and back, embedded", kitchen, False, "detector:=embedded")
-        self.live_rows("kitchen_people there and back, network", kitchen, False, "detector:=network",
-                       f"model:={self.options.model}")
+        for detector in ("network", "network+embedded"):
+            self.live_rows(f"kitchen_people there and back, {detector}", kitchen, False,
+                           f"detector:={detector}", f"model:={self.options.model}")
 
     def live_rows(self, name, sequence, has_bars, *arguments):
         bag = self.output / "live.bag"
