@@ -11,6 +11,7 @@
 #include "posefusion/segmentation/mapped_people.hpp"
 #include "posefusion/segmentation/paper_cut.hpp"
 #include "posefusion/segmentation/planes.hpp"
+#include "posefusion/segmentation/trunks.hpp"
 #include "posefusion/segmentation/upsample.hpp"
 
 namespace pf {
@@ -179,6 +180,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   s.planes.find(s.evidence.grid, s.evidence.flatness);
   s.locate(config_.carry_frames);
   if (s.people.empty()) return result;
+  doubtTrunks(s.people, s.evidence.grid, s.evidence.flatness, s.evidence.background);
   s.cut(config_);
   s.finish(frame, config_.margin_px, result);
   result.in_map_mask = s.inMapMask(frame, result.mask);
