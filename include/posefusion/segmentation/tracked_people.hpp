@@ -30,8 +30,9 @@ void dropJointsOutside(const SceneGrid& grid, float margin_px, Person& person);
 
 /// Moves people from the last frame into the newest one by the sparse optical flow of their joints
 /// and of samples of their masks: a joint follows its own flow where that agrees with the person's
-/// median, else the median, and on past the border of the image. `grid`: of the newest frame, of the same size as that of the last one;
-/// `flow`: advanced to the newest frame. Where the flow knows no last frame, people stay in place.
+/// median, else the median, and on past the border of the image. `grid`: of the newest frame, of
+/// the same size as that of the last one; `flow`: advanced to the newest frame. Where the flow
+/// knows no last frame, people stay in place.
 void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
