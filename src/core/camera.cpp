@@ -61,6 +61,9 @@ bool PinholeCamera::operator==(const PinholeCamera& other) const {
          cx == other.cx && cy == other.cy && lens == other.lens && distortion == other.distortion;
 }
 
+// In widths of the image: 1 / (2 tan(85 degrees)).
+constexpr double kLeastFocalLength = 0.0437;
+
 void validate(const PinholeCamera& camera) {
   const auto require = [](bool good, const char* name, double value, const char* expected) {
     if (good) return;
@@ -71,6 +74,11 @@ void validate(const PinholeCamera& camera) {
   require(camera.height > 0, "height", camera.height, "more than 0 pixels");
   require(std::isfinite(camera.fx) && camera.fx > 0, "fx", camera.fx, "a focal length above 0");
   require(std::isfinite(camera.fy) && camera.fy > 0, "fy", camera.fy, "a focal length above 0");
+  // 525 that was written as 5.25, or a length in metres.
+  require(camera.fx > kLeastFocalLength * camera.width, "fx", camera.fx,
+          "a focal length in pixels, of a view of less than 170 degrees");
+  require(camera.fy > kLeastFocalLength * camera.height, "fy", camera.fy,
+          "a focal length in pixels, of a view of less than 170 degrees");
   require(camera.cx > 0 && camera.cx < camera.width, "cx", camera.cx, "a column of the image");
   require(camera.cy > 0 && camera.cy < camera.height, "cy", camera.cy, "a row of the image");
   for (const double d : camera.distortion) {
