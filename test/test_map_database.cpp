@@ -93,6 +93,8 @@ TEST(MapDatabase, WritesAgainAndAgainWhatHasChanged) {
     SurfelArrays one;
     one.resize(1);
     one.created[0] = one.seen[0] = 10;
+    one.nz[0] = -1;
+    one.radius[0] = 0.02F;
     example.map.add(one);
     u.blocks = changedBlocks(example.map, 10);
     EXPECT_EQ(u.blocks.size(), 1U);

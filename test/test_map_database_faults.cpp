@@ -97,6 +97,42 @@ TEST(MapDatabase, RefusesSurfelsThatCannotBe) {
   s.nx[3] = 0;
   s.created[0] = 10;
   EXPECT_NE(error("b").find("a surfel is of frame 10"), std::string::npos);
+  s.created[0] = 0;
+  s.seen[0] = std::numeric_limits<std::int32_t>::min();
+  EXPECT_NE(error("c").find("seen in -2147483648"), std::string::npos);
+  s.seen[0] = 0;
+  for (const float radius : {1e30F, 0.0F, -0.1F}) {
+    s.radius[1] = radius;
+    EXPECT_NE(error("d" + std::to_string(radius)).find("the radius of a surfel is"),
+              std::string::npos)
+        << radius;
+  }
+  s.radius[1] = 0.02F;
+  s.nz[2] = 4;
+  EXPECT_NE(error("e").find("the normal's length of a surfel is 4"), std::string::npos);
+  s.nz[2] = -1;
+  s.x[5] = 3e8F;
+  EXPECT_NE(error("f").find("the place of a surfel"), std::string::npos);
+  s.x[5] = 0;
+  for (const std::int32_t violations : {std::numeric_limits<std::int32_t>::min(), 2'000'000'000}) {
+    s.violations[4] = violations;
+    EXPECT_NE(error("g" + std::to_string(violations)).find("the violations of a surfel"),
+              std::string::npos);
+  }
+  s.violations[4] = 0;
+  EXPECT_EQ(error("whole"), "");
+}
+
+TEST(MapDatabase, ALargePictureIsRefusedBeforeItIsUnpacked) {
+  // 30,000 x 30,000 pixels in some kilobytes would be unpacked to 900 MB.
+  const TemporaryFolder folder;
+  ExampleMap example;
+  example.update.images[1].grey = cv::Mat::zeros(30, 33, CV_8UC1);
+  const std::string path = saved(folder, example.update);
+  EXPECT_NE(errorOf([&] {
+              readAll(path);
+            }).find("an image of keyframe 1 is damaged, or larger than the camera's"),
+            std::string::npos);
 }
 
 TEST(MapDatabase, ADamagedFileIsRefusedOrReadButNeverCrashes) {

@@ -40,6 +40,10 @@ void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char*
   std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
 
+bool isSaved(const SurfelMap& map, const SurfelArrays& s, std::size_t i) {
+  return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
+}
+
 /// Throws where the file has other vertices than saveMap() writes.
 PlyVertices findVertices(const std::string& file) {
   PlyVertices vertices = readPlyHeader(file);
@@ -68,20 +72,22 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
 
 }  // namespace
 
+std::size_t savedSurfels(const SurfelMap& map) {
+  std::size_t count = 0;
+  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += isSaved(map, s, i); });
+  return count;
+}
+
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map) {
   const RigidMotion motion(T_file_map);
-  const auto is_written = [&](const SurfelArrays& s, std::size_t i) {
-    return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
-  };
-  std::size_t count = 0;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += is_written(s, i); });
+  const std::size_t count = savedSurfels(map);
   AtomicFile file(path);
   file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
                              "surfels of posefusion: map frame, metres");
   std::array<char, kVertexBytes> vertex{};
   map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
-    if (!is_written(surfels, i)) return;
+    if (!isSaved(map, surfels, i)) return;
     pack(surfels, i, motion, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
   });

@@ -25,6 +25,17 @@ void checkPages(const SqliteDatabase& database) {
 
 }  // namespace
 
+void setClosed(const SqliteDatabase& database, bool closed) {
+  const std::string name = std::string("'") + kClosedBlob + "'";
+  database.run(closed ? "INSERT OR REPLACE INTO blobs VALUES(" + name + ", x'01')"
+                      : "DELETE FROM blobs WHERE name = " + name);
+}
+
+bool isClosed(const SqliteDatabase& database) {
+  return database.integer(std::string("SELECT count(*) FROM blobs WHERE name = '") + kClosedBlob +
+                          "'") > 0;
+}
+
 void makeMapTables(const SqliteDatabase& database) {
   const SqliteDatabase& d = database;
   SqliteTransaction transaction(d);

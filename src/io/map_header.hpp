@@ -12,4 +12,12 @@ void makeMapTables(const SqliteDatabase& database);
 /// exactly its tables.
 void checkMapFile(const SqliteDatabase& database);
 
+/// Name of the blob that only a closed map has.
+constexpr char kClosedBlob[] = "closed";
+
+/// Notes in the file whether its writer has closed it. @{
+void setClosed(const SqliteDatabase& database, bool closed);
+bool isClosed(const SqliteDatabase& database);
+/// @}
+
 }  // namespace pf

@@ -21,7 +21,9 @@ SqliteDatabase openNew(const std::string& path) {
   if (fd < 0) throw InputError(path + ": cannot be made: " + std::strerror(errno));
   close(fd);
   std::error_code ignored;
-  std::filesystem::remove(path + "-wal", ignored);  // of a map of that name that was deleted
+  for (const char* companion : {"-wal", "-journal"}) {  // of a map of that name that was deleted
+    std::filesystem::remove(path + companion, ignored);
+  }
   return SqliteDatabase(path, SqliteDatabase::Access::write);
 }
 
@@ -30,6 +32,15 @@ void setUp(const SqliteDatabase& database) {
   database.run("PRAGMA locking_mode=EXCLUSIVE");
   database.run("PRAGMA journal_mode=WAL");
   database.run("PRAGMA synchronous=NORMAL");  // a power cut may cost the last write, never the file
+}
+
+/// From the log into the file, as far as the disk has room; what has none stays in the log.
+void emptyLog(const SqliteDatabase& database) {
+  try {
+    database.run("PRAGMA wal_checkpoint(PASSIVE)");
+  } catch (const InputError&) {
+    // Tried again after the next write.
+  }
 }
 
 bool same(const Keyframe& a, const Keyframe& b) {
@@ -176,10 +187,13 @@ MapWriter::MapWriter(const std::string& path, Mode mode)
   if (mode == Mode::extend) checkMapFile(state_->database);
   setUp(state_->database);
   if (mode == Mode::create) makeMapTables(state_->database);
+  setClosed(state_->database, false);
+  emptyLog(state_->database);
 }
 
 MapWriter::~MapWriter() {
   try {
+    setClosed(state_->database, true);
     // Into the one file, which then can be read where nothing can be written.
     state_->database.run("PRAGMA journal_mode=DELETE");
   } catch (const InputError&) {
@@ -200,6 +214,23 @@ void MapWriter::write(const MapUpdate& update) {
   transaction.commit();
   state_->keyframes = update.keyframes;
   state_->constraints = update.constraints;
+  emptyLog(database);
+}
+
+void renameMapFile(const std::string& from, const std::string& to) {
+  if (lookAtFiles(from).has_log) {
+    throw InputError(from + ": was not closed, its log " + logOf(from) +
+                     " cannot be written into it (disk full?): it keeps its name");
+  }
+  std::error_code error;
+  for (const std::string& there : {to, logOf(to)}) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(there, error))) {
+      throw InputError(to + ": cannot be written: " + there + " is there already; the map is " +
+                       from);
+    }
+  }
+  std::filesystem::rename(from, to, error);
+  if (error) throw InputError(to + ": cannot be written: " + error.message());
 }
 
 }  // namespace pf

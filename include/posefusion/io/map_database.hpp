@@ -54,8 +54,9 @@ struct MapUpdate : MapContent {
 };
 
 /// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). Nobody else can open
-/// it meanwhile. A process that dies leaves what the last whole write() brought. Not thread safe,
-/// but may be used from any one thread.
+/// it meanwhile. A process that dies leaves what the last whole write() brought, in the file and
+/// the log beside it (`*.pfdb-wal`); without the log, what the write() before brought. Not thread
+/// safe, but may be used from any one thread.
 class MapWriter {
  public:
   enum class Mode {
@@ -78,6 +79,10 @@ class MapWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Gives a closed map file another name. Throws InputError naming the file, and leaves both as they
+/// are, where `from` was not closed or there is something at `to` already.
+void renameMapFile(const std::string& from, const std::string& to);
+
 /// How much a map file holds.
 struct MapCounts {
   std::size_t blocks = 0, surfels = 0, images = 0, bytes = 0;
@@ -98,6 +103,10 @@ class MapReader {
   /// Both images are empty when none are stored.
   KeyframeImages images(int keyframe) const;
   MapCounts counts() const;
+
+  /// Why the newest of what was written may not be there; empty where all of it is. A map that was
+  /// not closed has it in its log, which is lost where the file was copied or renamed without it.
+  const std::string& missing() const;
 
  private:
   struct State;

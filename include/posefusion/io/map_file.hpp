@@ -13,6 +13,9 @@ namespace pf {
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map = Eigen::Isometry3d::Identity());
 
+/// How many surfels saveMap() would write.
+std::size_t savedSurfels(const SurfelMap& map);
+
 /// Reads what saveMap() writes; weights are the confidences. Throws InputError naming the file.
 SurfelArrays loadMap(const std::string& path);
 
