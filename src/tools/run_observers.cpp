@@ -48,8 +48,9 @@ void LiveDepthCheck::add(const ProcessedFrame& frame) {
   check_.add(still, frame.segmentation.mask, frame.status.T_map_camera);
 }
 
-RunObservers::RunObservers(const RunOptions& options, const SurfelMap& map) {
-  if (options.save_masks) masks_.emplace(options.output);
+RunObservers::RunObservers(const RunOptions& options, const std::string& folder,
+                           const SurfelMap& map) {
+  if (options.save_masks) masks_.emplace(folder);
   if (!options.status_file.empty()) status_.emplace(options.status_file);
   if (options.check_depth) depth_.emplace(map);
 }

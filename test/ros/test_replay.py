@@ -68,17 +68,17 @@ class Replay(unittest.TestCase):
         self.assertLess(text.count("\n * /"), 60, "parameters at the start")
         self.call(program("posefusion_run"), self.bag, "--detector", "recorded", "--output",
                   self.folder + "/offline")
-        offline = poses(self.folder + "/offline/trajectory.txt")
+        offline = poses(self.folder + "/offline/latest/trajectory.txt")
         self.assertEqual(len(offline), FRAMES)
         self.assertEqual(poses(self.folder + "/ros_run/latest/trajectory.txt"), offline)
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/map.ply").read_bytes(),
-                         pathlib.Path(self.folder, "offline/map.ply").read_bytes())
+                         pathlib.Path(self.folder, "offline/latest/map.ply").read_bytes())
         self.check_summaries(text)
 
     def check_summaries(self, text):
         """What the replay tells beside the offline run is the same, as far as it is told."""
         replayed, offline = (json.loads(pathlib.Path(self.folder, run, "summary.json").read_text())
-                             for run in ("ros_run/latest", "offline"))
+                             for run in ("ros_run/latest", "offline/latest"))
         for key in ("version", "frames", "masks", "surfels", "configuration"):
             self.assertEqual(replayed[key], offline[key], key)
         for key in ("ate_rmse_m", "ate_held_rmse_m"):
@@ -87,7 +87,7 @@ class Replay(unittest.TestCase):
         self.assertIn("tracking", replayed["stages"])
         self.assertGreater(pathlib.Path(self.folder, "ros_run/latest/map.png").stat().st_size, 10000)
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/people.png").read_bytes(),
-                         pathlib.Path(self.folder, "offline/people.png").read_bytes())
+                         pathlib.Path(self.folder, "offline/latest/people.png").read_bytes())
         self.assertIn("ATE ", text)
         self.assertRegex(text, r"results +" + self.folder + "/ros_run/")
 

@@ -8,12 +8,22 @@ namespace pf {
 
 /// A folder of its own for the results of one run, below one that the user named:
 /// `<parent>/<year>-<month>-<day>_<hour>-<minute>-<second>`, in local time, with `_2`, `_3` where
-/// another run has begun in that second. So no run writes over another's results. Not thread safe.
+/// another run has begun in that second. So no run writes over another's results, and two that run
+/// at once never share one. Not thread safe.
 class RunFolder {
  public:
+  enum class Name {
+    whole,   ///< at once
+    partial  ///< with `.partial` at its end until finish()
+  };
+
   /// Makes the folder. Throws InputError naming it when that fails, or when nothing can be written
   /// into it (a trial file is written).
-  explicit RunFolder(const std::string& parent);
+  explicit RunFolder(const std::string& parent, Name name = Name::whole);
+
+  /// All results are in it: gives a partial folder its whole name, in one step. Throws InputError
+  /// naming the folder.
+  void finish();
 
   /// Whole path.
   std::string path() const { return path_.string(); }
@@ -32,5 +42,9 @@ class RunFolder {
   std::filesystem::path parent_, path_;
   bool made_parent_ = false;
 };
+
+/// Where the results of a run lie that a user names: below a folder of runs the newest (`latest`),
+/// otherwise the path itself.
+std::string newestRun(const std::string& path);
 
 }  // namespace pf
