@@ -107,6 +107,11 @@ TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
   EXPECT_TRUE(hasSaid("blur.threshold is -1, expected 0 to")) << said;
   EXPECT_EQ(run({sequence(), "--mode", "fast"}), 1);
   EXPECT_TRUE(hasSaid("mode is 'fast', expected one of elastic, posefusion, pfh")) << said;
+  EXPECT_NE(run({sequence(), "--max-frames", "-3"}), 0);
+  EXPECT_TRUE(hasSaid("'-3': expected a whole number, 0 to 1000000000")) << said;
+  EXPECT_NE(run({sequence(), "--threads", "-1"}), 0);
+  EXPECT_TRUE(hasSaid("'-1': expected a whole number, 0 to 1024")) << said;
+  EXPECT_NE(run({sequence(), "--threads", "two"}), 0);
   EXPECT_NE(run({sequence(), "--faster"}), 0);
   EXPECT_TRUE(hasSaid("--faster")) << said;
 }
