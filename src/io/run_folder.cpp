@@ -16,15 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr char kLatest[] = "latest";
 
-std::string dateAndTime() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d_%H-%M-%S", &local);
-  return text;
-}
-
 /// Makes a folder that was not there. Two processes never get the same one.
 fs::path makeNewFolder(const fs::path& parent, const std::string& name) {
   for (int i = 1;; ++i) {
@@ -37,23 +28,32 @@ fs::path makeNewFolder(const fs::path& parent, const std::string& name) {
 
 }  // namespace
 
+std::string dateAndTime() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d_%H-%M-%S", &local);
+  return text;
+}
+
+void linkLatest(const fs::path& folder) {
+  const fs::path link = folder.parent_path() / kLatest;
+  std::error_code ignored;
+  const fs::file_status there = fs::symlink_status(link, ignored);
+  if (fs::exists(there) && !fs::is_symlink(there)) return;
+  // Renamed into place, so that there is a link at any time.
+  const fs::path fresh = folder.parent_path() / (kLatest + (".part" + std::to_string(getpid())));
+  fs::remove(fresh, ignored);
+  fs::create_directory_symlink(folder.filename(), fresh, ignored);
+  fs::rename(fresh, link, ignored);
+}
+
 RunFolder::RunFolder(const std::string& parent) : parent_(fs::absolute(parent)) {
   made_parent_ = !fs::exists(fs::symlink_status(parent_));
   makeFolder(parent_.string());
   path_ = makeNewFolder(parent_, dateAndTime());
   AtomicFile(file("trial")).stream() << "written to see that it can be\n";
-}
-
-void RunFolder::makeLatest() const {
-  const fs::path link = parent_ / kLatest;
-  std::error_code ignored;
-  const fs::file_status there = fs::symlink_status(link, ignored);
-  if (fs::exists(there) && !fs::is_symlink(there)) return;
-  // Renamed into place, so that there is a link at any time.
-  const fs::path fresh = parent_ / (kLatest + (".part" + std::to_string(getpid())));
-  fs::remove(fresh, ignored);
-  fs::create_directory_symlink(path_.filename(), fresh, ignored);
-  fs::rename(fresh, link, ignored);
 }
 
 void RunFolder::removeIfEmpty() const {

@@ -6,8 +6,15 @@
 
 namespace pf {
 
+/// Now, in local time, as folders are named: "2026-05-01_14-03-59".
+std::string dateAndTime();
+
+/// Makes the link `latest` beside a folder lead to it. Something of that name that is no link
+/// stays.
+void linkLatest(const std::filesystem::path& folder);
+
 /// A folder of its own for the results of one run, below one that the user named:
-/// `<parent>/<year>-<month>-<day>_<hour>-<minute>-<second>`, in local time, with `_2`, `_3` where
+/// `<parent>/<dateAndTime()>`, with `_2`, `_3` where
 /// another run has begun in that second. So no run writes over another's results. Not thread safe.
 class RunFolder {
  public:
@@ -19,8 +26,7 @@ class RunFolder {
   std::string path() const { return path_.string(); }
   std::string file(const std::string& name) const { return (path_ / name).string(); }
 
-  /// Makes the link `<parent>/latest` lead here. Something of that name that is no link stays.
-  void makeLatest() const;
+  void makeLatest() const { linkLatest(path_); }
 
   /// Removes the folder where it is empty, and with it the parent where this run has made it.
   void removeIfEmpty() const;
