@@ -52,6 +52,15 @@ TEST(RunFolder, APartialOneGetsItsNameInOneStepAndTakesNoOthers) {
   EXPECT_EQ(readFile(wanted + "/mine"), "another's");
 }
 
+TEST(RunFolder, WhatIsDiscardedLeavesNothing) {
+  const TemporaryFolder folder;
+  const RunFolder run(folder / "output", RunFolder::Name::partial, "_saved");
+  EXPECT_NE(run.path().find("_saved.partial"), std::string::npos) << run.path();
+  std::ofstream(run.file("map.ply")) << "half a map";
+  run.discard();
+  EXPECT_FALSE(fs::exists(folder / "output"));
+}
+
 TEST(RunFolder, LatestLeadsToTheRunThatSaidSoLast) {
   const TemporaryFolder folder;
   for (const std::string text : {"first", "second"}) {

@@ -2,6 +2,8 @@
 #include "posefusion/core/camera.hpp"
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 #include "posefusion/core/error.hpp"
@@ -59,6 +61,29 @@ PinholeCamera PinholeCamera::shrunk(int factor) const {
 bool PinholeCamera::operator==(const PinholeCamera& other) const {
   return width == other.width && height == other.height && fx == other.fx && fy == other.fy &&
          cx == other.cx && cy == other.cy && lens == other.lens && distortion == other.distortion;
+}
+
+bool isSameCamera(const PinholeCamera& a, const PinholeCamera& b) {
+  constexpr double kSame_px = 0.01;
+  if (a.width != b.width || a.height != b.height || a.lens != b.lens ||
+      a.distortion != b.distortion) {
+    return false;
+  }
+  for (const double u : {-0.5, a.width - 0.5}) {
+    for (const double v : {-0.5, a.height - 0.5}) {
+      const Eigen::Vector2d there = b.project(a.unproject(u, v, 1.0));
+      // Written so that what is no number differs.
+      if (!((there - Eigen::Vector2d(u, v)).norm() <= kSame_px)) return false;
+    }
+  }
+  return true;
+}
+
+std::string describe(const PinholeCamera& c) {
+  std::ostringstream out;
+  out << std::setprecision(8) << c.width << " x " << c.height << ", fx " << c.fx << " fy " << c.fy
+      << " cx " << c.cx << " cy " << c.cy;
+  return out.str();
 }
 
 // In widths of the image: 1 / (2 tan(85 degrees)).

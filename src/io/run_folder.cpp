@@ -45,10 +45,11 @@ fs::path makeNewFolder(const fs::path& parent, const std::string& name, const st
 
 }  // namespace
 
-RunFolder::RunFolder(const std::string& parent, Name name) : parent_(fs::absolute(parent)) {
+RunFolder::RunFolder(const std::string& parent, Name name, const std::string& kind)
+    : parent_(fs::absolute(parent)) {
   made_parent_ = !fs::exists(fs::symlink_status(parent_));
   makeFolder(parent_.string());
-  path_ = makeNewFolder(parent_, dateAndTime(), name == Name::partial ? kPartial : "");
+  path_ = makeNewFolder(parent_, dateAndTime() + kind, name == Name::partial ? kPartial : "");
   AtomicFile(file("trial")).stream() << "written to see that it can be\n";
 }
 
@@ -80,6 +81,12 @@ void RunFolder::makeLatest() const {
   fs::remove(fresh, ignored);
   fs::create_directory_symlink(path_.filename(), fresh, ignored);
   fs::rename(fresh, link, ignored);
+}
+
+void RunFolder::discard() const {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  if (made_parent_) fs::remove(parent_, ignored);
 }
 
 void RunFolder::removeIfEmpty() const {

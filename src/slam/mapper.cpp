@@ -29,13 +29,19 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   if (text.empty() && !(depth_fits && (none || isLikeDepth(still.in_map_mask, CV_8UC1)))) {
     text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
   }
-  if (text.empty() && !view.empty() && input.camera.shrunk(config.frame.shrink) != view.camera) {
-    text = "the camera or the image size is not that of the frames before";
+  if (text.empty() && sees_other_camera) {
+    text = "the camera (" + describe(input.camera) + ") is not that of the map (" +
+           describe(camera) + ")";
   }
   if (text.empty() && input.stamp_ns <= last_stamp_ns) {
     text = "its stamp is not later than that of the frame before";
   }
   return text;
+}
+
+/// Nobody knows where a camera is that is not the map's.
+TrackingState Mapper::State::state() const {
+  return sees_other_camera ? TrackingState::lost : localiser.state();
 }
 
 /// The last view where it serves, else one of its own.
@@ -109,9 +115,14 @@ Mapper::~Mapper() = default;
 
 FrameStatus Mapper::process(const StaticFrame& input) {
   State& s = *state_;
+  if (defectOf(input.frame).empty()) {
+    s.sees_other_camera = !s.view.empty() && !isSameCamera(s.camera, input.frame.camera);
+  }
   FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
   status.detail = s.defect(input);
+  status.is_other_camera = s.sees_other_camera;
   if (!status.detail.empty()) return status;
+  if (s.view.empty()) s.camera = input.frame.camera;
   const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
   s.frame.assign(input.frame, input.mask, s.config.frame);
@@ -167,7 +178,7 @@ const BackEnd& Mapper::backEnd() const { return state_->back_end; }
 FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   FrameStatus status;
   status.stamp_ns = stamp_ns;
-  status.state = state_->localiser.state();
+  status.state = state_->state();
   status.outcome = outcome;
   status.T_map_camera =
       state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
@@ -179,7 +190,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
 }
 
 const ModelView& Mapper::view() const {
-  return state_->localiser.state() == TrackingState::lost ? state_->nothing : state_->view;
+  return state_->state() == TrackingState::lost ? state_->nothing : state_->view;
 }
 
 ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T_map_camera) const {
@@ -214,6 +225,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.T_world_map.reset();
   s.view = ModelView();
   s.localiser.reset();
+  s.sees_other_camera = false;
   s.T_map_start = T_map_camera;
   s.last_stamp_ns = kBeforeAll;
   s.back_end = BackEnd(s.config.graph);

@@ -152,6 +152,7 @@ void Mapper::load(SavedMap saved, MapUse use) {
   s.map.restore(saved.surfels, saved.frame);
   s.T_world_map = saved.T_world_map;
   s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
+  s.camera = saved.camera;
   s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
   for (KeyframeView& view : saved.views) {
     if (view.intensity.size() != cv::Size(s.frame.camera.width, s.frame.camera.height)) continue;
@@ -161,12 +162,27 @@ void Mapper::load(SavedMap saved, MapUse use) {
   s.may_change = use == MapUse::extend;
   s.closer_is_old = true;
   const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
-  s.rooms = spreadOut(poses);
   for (const Eigen::Isometry3d& pose : poses) {
     s.last_fragment = std::max(s.last_fragment, fragmentAt(pose));
   }
-  s.localiser.beginLost(poses.back(), saved.brightness);
-  s.showFrom(poses.back(), false);
+  s.seek(poses.back(), saved.brightness);
+}
+
+void Mapper::restartClock() {
+  State& s = *state_;
+  if (s.back_end.graph().keyframes().empty()) return reset();
+  s.last_stamp_ns = kBeforeAll;
+  s.lost_s.reset();
+  s.seek(s.localiser.lastPose(), s.localiser.brightness());
+}
+
+/// The camera is lost, and looked for everywhere in the map.
+void Mapper::State::seek(const Eigen::Isometry3d& T_map_last, Brightness brightness) {
+  rooms = spreadOut(back_end.keyframePoses());
+  map_at_loss.reset();
+  place_is_stale = true;  // by what was asked before
+  localiser.beginLost(T_map_last, brightness);
+  showFrom(T_map_last, false);
 }
 
 SavedMap Mapper::saved(const PinholeCamera& camera) const {

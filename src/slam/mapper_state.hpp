@@ -38,6 +38,8 @@ struct Mapper::State {
   std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
+  PinholeCamera camera;            ///< of the frames of the map, full size
+  bool sees_other_camera = false;  ///< the last frame was of another one
   WorkingFrame frame;
   cv::Mat input_depth_m;      ///< of the frame, before people were taken out
   ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
@@ -67,11 +69,13 @@ struct Mapper::State {
   std::optional<FragmentPlace> seen_at;  ///< told once, not yet twice
 
   std::string defect(const StaticFrame& input) const;
+  TrackingState state() const;
   RenderedModel modelFrom(const Eigen::Isometry3d& T);
   const ModelView& viewFrom(const Eigen::Isometry3d& T);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
   void follow(const Location& location, bool fill);
+  void seek(const Eigen::Isometry3d& T_map_last, Brightness brightness);
   void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void tellCloser();

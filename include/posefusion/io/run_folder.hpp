@@ -17,9 +17,10 @@ class RunFolder {
     partial  ///< with `.partial` at its end until finish()
   };
 
-  /// Makes the folder. Throws InputError naming it when that fails, or when nothing can be written
-  /// into it (a trial file is written).
-  explicit RunFolder(const std::string& parent, Name name = Name::whole);
+  /// Makes the folder; `kind` comes behind its date. Throws InputError naming it when that fails,
+  /// or when nothing can be written into it (a trial file is written).
+  explicit RunFolder(const std::string& parent, Name name = Name::whole,
+                     const std::string& kind = "");
 
   /// All results are in it: gives a partial folder its whole name, in one step. Throws InputError
   /// naming the folder.
@@ -31,6 +32,10 @@ class RunFolder {
 
   /// Makes the link `<parent>/latest` lead here. Something of that name that is no link stays.
   void makeLatest() const;
+
+  /// Removes the folder with all that is in it, and the parent where this run has made it and there
+  /// is nothing else.
+  void discard() const;
 
   /// Removes the folder where it is empty, and with it the parent where this run has made it.
   void removeIfEmpty() const;
