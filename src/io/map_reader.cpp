@@ -5,6 +5,8 @@
 
 #include "map_encoding.hpp"
 #include "map_header.hpp"
+#include "map_schema.hpp"
+#include "map_upgrade.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/graph/pose_graph.hpp"
 #include "posefusion/io/images.hpp"
@@ -107,6 +109,7 @@ cv::Mat readImage(std::string_view bytes, int type, const cv::Size& size, int ke
 
 struct MapReader::State {
   SqliteDatabase database;
+  std::int64_t version = kMapVersion;
 
   /// What is wrong inside of the file, with its name.
   template <typename Read>
@@ -122,7 +125,7 @@ struct MapReader::State {
 
 MapReader::MapReader(const std::string& path)
     : state_(new State{SqliteDatabase(path, SqliteDatabase::Access::read)}) {
-  checkMapFile(state_->database);
+  state_->version = checkMapFile(state_->database);
 }
 
 MapReader::~MapReader() = default;
@@ -134,6 +137,7 @@ MapContent MapReader::content() const {
     readState(database, content);
     readKeyframes(database, content);
     readConstraints(database, content);
+    if (state_->version < kMapVersion) upgradeKeyframes(content.keyframes, content.constraints);
     readFrames(database, content);
     SqliteStatement row = database.prepare("SELECT name, data FROM blobs");
     while (row.step()) content.blobs.emplace(row.blob(0), row.blob(1));
@@ -143,23 +147,30 @@ MapContent MapReader::content() const {
   });
 }
 
-SurfelArrays MapReader::surfels() const {
+std::vector<FragmentSurfels> MapReader::surfels() const {
   return state_->named([&] {
     const int last_frame = lastFrame(state_->database);
-    SurfelArrays all;
-    SqliteStatement row =
-        state_->database.prepare("SELECT id, surfels, checksum FROM blocks ORDER BY id");
+    const bool is_old = state_->version < kMapVersion;
+    std::vector<FragmentSurfels> parts;
+    SqliteStatement row = state_->database.prepare(
+        is_old ? "SELECT id, surfels, checksum, 0 FROM blocks ORDER BY id"
+               : "SELECT id, surfels, checksum, fragment FROM blocks ORDER BY id");
     while (row.step()) {
       const std::string_view bytes = row.blob(1);
       if (checksumOf(bytes) != row.integer(2)) {
         throw InputError("is damaged: block " + std::to_string(row.integer(0)) +
                          " does not have its checksum");
       }
-      all.forEachArray(decodeSurfels(bytes, last_frame), [](auto& array, const auto& part) {
-        array.insert(array.end(), part.begin(), part.end());
-      });
+      const int fragment = narrow(row.integer(3), "the fragment of a block");
+      if (fragment < 0) {
+        throw InputError("block " + std::to_string(row.integer(0)) + " is of fragment " +
+                         std::to_string(fragment) + ", expected 0 or more");
+      }
+      if (parts.empty() || parts.back().fragment != fragment) parts.push_back({fragment, {}});
+      parts.back().surfels.append(decodeSurfels(bytes, last_frame));
     }
-    return all;
+    if (!is_old || parts.empty()) return parts;
+    return upgradeSurfels(parts.front().surfels, content().keyframes);
   });
 }
 

@@ -57,16 +57,19 @@ void printInfo(const std::string& file) {
 void check(const std::string& file) {
   const MapReader reader(file);
   const MapContent content = reader.content();
-  const std::size_t surfels = reader.surfels().size();
+  const std::size_t surfels = surfelsIn(reader.surfels());
   for (const Keyframe& k : content.keyframes) reader.images(k.id);
   std::printf("%s: whole: %zu surfels, %zu keyframes, %zu frames\n", file.c_str(), surfels,
               content.keyframes.size(), content.frames.size());
 }
 
-/// The poses of all frames, as the graph has them now, in the order of their stamps.
+/// The poses of all frames of the first fragment, as the graph has them now, in the order of their
+/// stamps.
 Trajectory trajectoryOf(const MapContent& content) {
   Trajectory trajectory;
   for (const FrameRecord& frame : content.frames) {
+    const auto keyframe = static_cast<std::size_t>(frame.pose.keyframe);
+    if (content.keyframes[keyframe].fragment != kFirstFragment) continue;
     trajectory.push_back({frame.stamp_ns, poseOf(frame.pose, content.keyframes)});
   }
   std::stable_sort(trajectory.begin(), trajectory.end(),
