@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/graph/fragments.hpp"
+#include "posefusion/core/map_pose.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,8 +66,8 @@ struct Carried {
   std::size_t stableAtHome() const {
     const SurfelMap& map = mapper_.map();
     std::size_t count = 0;
-    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-      count += map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
+    map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
+      count += map.isStable(s, i) ? 1 : 0;
     });
     return count;
   }
@@ -75,17 +75,29 @@ struct Carried {
   std::size_t surfels_ = 0;  ///< stable ones, before the loss
 };
 
-TEST(Fragments, ALostCameraMapsOnFarFromAllElse) {
+TEST(Fragments, ALostCameraMapsOnInCoordinatesOfItsOwn) {
   Carried run(Carried::config(), false);
   for (int i = kMapped - 1; i > kMapped / 2; --i) {
     const FrameStatus& status = run.see(i);
     ASSERT_EQ(status.state, TrackingState::tracking) << "frame " << i;
     EXPECT_EQ(status.fragment, 1);
     EXPECT_FALSE(status.located) << "where it is, nobody knows";
+    EXPECT_LT(status.T_map_camera.translation().norm(), 3) << "near the origin of the fragment";
   }
   EXPECT_EQ(run.stableAtHome(), run.surfels_) << "the map is as it was";
   EXPECT_GT(run.mapper_.map().stableCount(), run.surfels_ + 1000);
   EXPECT_EQ(run.mapper_.backEnd().trajectory().size(), std::size_t{kMapped / 2});
+}
+
+TEST(Fragments, OneBeginsAtAnOriginOfItsOwn) {
+  const Carried run(Carried::config(), false);
+  const Keyframe& last = run.mapper_.backEnd().graph().keyframes().back();
+  EXPECT_EQ(last.fragment, 1);
+  EXPECT_EQ(last.T_map_camera.translation().norm(), 0);
+  for (const SurfelBlock& block : run.mapper_.map().blocks()) {
+    EXPECT_LE(block.fragment, 1);
+    EXPECT_LT(block.bounds.center().norm(), 8.0F) << "coordinates overlap, blocks are apart";
+  }
 }
 
 TEST(Fragments, NoneIsBegunWhereThatIsOff) {

@@ -8,7 +8,6 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/rigid_motion.hpp"
-#include "posefusion/graph/fragments.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
 
@@ -38,10 +37,6 @@ void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char*
   packPoint(point, out);
   const std::array<float, 2> rest = {s.radius[i], s.confidence[i]};
   std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
-}
-
-bool isSaved(const SurfelMap& map, const SurfelArrays& s, std::size_t i) {
-  return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
 }
 
 /// Throws where the file has other vertices than saveMap() writes.
@@ -74,7 +69,9 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
 
 std::size_t savedSurfels(const SurfelMap& map) {
   std::size_t count = 0;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += isSaved(map, s, i); });
+  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
+    count += map.isStable(s, i) ? 1 : 0;
+  });
   return count;
 }
 
@@ -86,8 +83,8 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map,
   file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
                              "surfels of posefusion: map frame, metres");
   std::array<char, kVertexBytes> vertex{};
-  map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
-    if (!isSaved(map, surfels, i)) return;
+  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& surfels, std::size_t i) {
+    if (!map.isStable(surfels, i)) return;
     pack(surfels, i, motion, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
   });

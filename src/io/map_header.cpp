@@ -10,8 +10,12 @@
 namespace pf {
 namespace {
 
-void checkTables(const SqliteDatabase& database) {
+void checkTables(const SqliteDatabase& database, std::int64_t version) {
   std::set<std::string> expected(kMapTables.begin(), kMapTables.end()), found;
+  if (version == kFirstMapVersion) {
+    expected.erase(kMapTables[kBlocksTable]);
+    expected.insert(kFirstBlocksTable);
+  }
   SqliteStatement rows = database.prepare("SELECT sql FROM sqlite_master");
   while (rows.step()) found.emplace(rows.blob(0));
   if (found != expected) throw InputError(database.path() + ": has other tables than a map");
@@ -45,18 +49,20 @@ void makeMapTables(const SqliteDatabase& database) {
   transaction.commit();
 }
 
-void checkMapFile(const SqliteDatabase& database) {
+std::int64_t checkMapFile(const SqliteDatabase& database) {
   if (database.integer("PRAGMA application_id") != kMapApplication) {
     throw InputError(database.path() + ": is no map of posefusion");
   }
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version != kMapVersion) {
+  if (version < kFirstMapVersion || version > kMapVersion) {
     throw InputError(database.path() + ": is a map of version " + std::to_string(version) +
-                     ", expected " + std::to_string(kMapVersion) +
+                     ", expected " + std::to_string(kFirstMapVersion) + " to " +
+                     std::to_string(kMapVersion) +
                      (version > kMapVersion ? ": a newer posefusion made it" : ""));
   }
-  checkTables(database);
+  checkTables(database, version);
   checkPages(database);
+  return version;
 }
 
 }  // namespace pf

@@ -3,6 +3,8 @@
 
 #include "map_header.hpp"
 #include "map_rows.hpp"
+#include "map_schema.hpp"
+#include "map_upgrade.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/graph/pose_graph.hpp"
 #include "posefusion/io/map_database.hpp"
@@ -50,6 +52,7 @@ void readFrames(const SqliteDatabase& database, MapContent& content) {
 struct MapReader::State {
   SqliteDatabase database;
   std::string missing{};
+  std::int64_t version = kMapVersion;
 
   /// What is wrong inside of the file, with its name.
   template <typename Read>
@@ -72,7 +75,7 @@ struct MapReader::State {
 MapReader::MapReader(const std::string& path) {
   const SqliteFiles files = lookAtFiles(path);  // opening it may make an empty log
   state_.reset(new State{SqliteDatabase(path, SqliteDatabase::Access::read)});
-  checkMapFile(state_->database);
+  state_->version = checkMapFile(state_->database);
   if (files.is_closed || files.has_log || isClosed(state_->database)) return;
   state_->missing = path + ": was not closed by its writer, and its log " + logOf(path) +
                     " is not there: what was mapped in the last second may be missing";
@@ -87,6 +90,7 @@ MapContent MapReader::content() const {
     readKeyframes(database, content);
     SqliteStatement constraint = select(database, kConstraintColumns, "constraints ORDER BY id");
     while (constraint.step()) content.constraints.push_back(constraintAt(constraint));
+    if (state_->version < kMapVersion) upgradeKeyframes(content.keyframes, content.constraints);
     readFrames(database, content);
     SqliteStatement blob = database.prepare("SELECT name, data FROM blobs");
     while (blob.step()) content.blobs.emplace(blob.blob(0), blob.blob(1));
@@ -97,17 +101,21 @@ MapContent MapReader::content() const {
   });
 }
 
-SurfelArrays MapReader::surfels() const {
+std::vector<FragmentSurfels> MapReader::surfels() const {
   return state_->named([&] {
     const int last_frame = state_->state().frame;
-    SurfelArrays all;
-    SqliteStatement row = select(state_->database, kBlockColumns, "blocks ORDER BY id");
+    std::vector<FragmentSurfels> parts;
+    SqliteStatement row =
+        select(state_->database, blockColumns(state_->version), "blocks ORDER BY id");
     while (row.step()) {
-      all.forEachArray(surfelsAt(row, last_frame), [](auto& array, const auto& part) {
-        array.insert(array.end(), part.begin(), part.end());
-      });
+      const BlockRecord block = blockAt(row, last_frame);
+      if (parts.empty() || parts.back().fragment != block.fragment) {
+        parts.push_back({block.fragment, {}});
+      }
+      parts.back().surfels.append(block.surfels);
     }
-    return all;
+    if (state_->version == kMapVersion || parts.empty()) return parts;
+    return upgradeSurfels(parts.front().surfels, content().keyframes);
   });
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "map_encoding.hpp"
+#include "map_schema.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace pf {
@@ -70,13 +71,25 @@ FrameRecord frameAt(const SqliteStatement& row) {
   return frame;
 }
 
-SurfelArrays surfelsAt(const SqliteStatement& row, int last_frame) {
+const char* blockColumns(std::int64_t version) {
+  return version < kMapVersion ? "id, surfels, checksum, 0" : "id, surfels, checksum, fragment";
+}
+
+BlockRecord blockAt(const SqliteStatement& row, int last_frame) {
+  const std::string name = "block " + std::to_string(row.integer(0));
   const std::string_view bytes = row.blob(1);
   if (checksumOf(bytes) != row.integer(2)) {
-    throw InputError("is damaged: block " + std::to_string(row.integer(0)) +
-                     " does not have its checksum");
+    throw InputError("is damaged: " + name + " does not have its checksum");
   }
-  return decodeSurfels(bytes, last_frame);
+  BlockRecord block;
+  block.index = static_cast<std::uint32_t>(row.integer(0));
+  block.fragment = narrow(row.integer(3), "the fragment of a block");
+  if (block.fragment < 0) {
+    throw InputError(name + " is of fragment " + std::to_string(block.fragment) +
+                     ", expected 0 or more");
+  }
+  block.surfels = decodeSurfels(bytes, last_frame);
+  return block;
 }
 
 KeyframeImages imagesAt(const SqliteStatement& row, const cv::Size& camera) {

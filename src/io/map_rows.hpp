@@ -26,9 +26,10 @@ PoseConstraint constraintAt(const SqliteStatement& row);
 constexpr char kFrameColumns[] = "stamp_ns, keyframe, t_keyframe_camera";
 FrameRecord frameAt(const SqliteStatement& row);
 
-constexpr char kBlockColumns[] = "id, surfels, checksum";
+/// Of the version of a file; in version 1 all blocks count as the first fragment's.
+const char* blockColumns(std::int64_t version);
 /// Surfels of frames up to `last_frame`.
-SurfelArrays surfelsAt(const SqliteStatement& row, int last_frame);
+BlockRecord blockAt(const SqliteStatement& row, int last_frame);
 
 constexpr char kImageColumns[] = "keyframe, grey, depth";
 /// `camera`: size of the frames, which no image exceeds.

@@ -7,6 +7,8 @@
 
 #include "map_header.hpp"
 #include "map_rows.hpp"
+#include "map_schema.hpp"
+#include "map_upgrade.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/graph/pose_graph.hpp"
 
@@ -62,6 +64,11 @@ void Salvage::forEachRow(const std::string& what, const std::string& table, cons
 }
 
 void Salvage::gatherState() {
+  version_ = database_.integer("PRAGMA user_version");
+  if (version_ < kFirstMapVersion || version_ > kMapVersion) {
+    throw InputError("is of version " + std::to_string(version_) + ", expected " +
+                     std::to_string(kFirstMapVersion) + " to " + std::to_string(kMapVersion));
+  }
   SqliteStatement row = database_.prepare(std::string("SELECT ") + kStateColumns + " FROM state");
   if (!row.step()) throw InputError("holds no map yet: its writer ended before the first write");
   stateAt(row, found_);
@@ -107,6 +114,7 @@ void Salvage::gatherConstraints() {
                check({Keyframe(), Keyframe()}, {alone});
                found_.constraints.push_back(c);
              });
+  if (version_ < kMapVersion) upgradeKeyframes(found_.keyframes, found_.constraints);
   bridgeGaps();
 }
 
@@ -137,18 +145,24 @@ void Salvage::gatherFrames() {
 }
 
 void Salvage::gatherBlocks() {
-  forEachRow("blocks of surfels", "blocks", "id", kBlockColumns,
+  SurfelArrays old;
+  forEachRow("blocks of surfels", "blocks", "id", blockColumns(version_),
              [&](std::int64_t, const SqliteStatement& row) {
-               BlockRecord block;
-               block.surfels = surfelsAt(row, std::numeric_limits<std::int32_t>::max());
+               BlockRecord block = blockAt(row, std::numeric_limits<std::int32_t>::max());
                for (const auto* frames : {&block.surfels.seen, &block.surfels.created}) {
                  for (const std::int32_t frame : *frames) {
                    found_.frame = std::max(found_.frame, frame);
                  }
                }
-               block.index = static_cast<std::uint32_t>(found_.blocks.size());
+               if (version_ < kMapVersion) return old.append(block.surfels);
                found_.blocks.push_back(std::move(block));
              });
+  for (FragmentSurfels& part : upgradeSurfels(old, found_.keyframes)) {
+    found_.blocks.push_back({0, part.fragment, std::move(part.surfels)});
+  }
+  for (std::size_t i = 0; i < found_.blocks.size(); ++i) {
+    found_.blocks[i].index = static_cast<std::uint32_t>(i);
+  }
   found_.block_count = static_cast<std::uint32_t>(found_.blocks.size());
 }
 

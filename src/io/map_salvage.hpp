@@ -42,6 +42,7 @@ class Salvage {
   int newNumber(std::int64_t keyframe) const;
 
   const SqliteDatabase& database_;
+  std::int64_t version_ = 0;
   MapUpdate found_;
   std::map<std::int64_t, int> numbers_;  ///< of the keyframes that are left: new by old
   std::set<int> after_a_gap_;            ///< keyframes (new) before which one is lost

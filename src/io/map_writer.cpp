@@ -8,6 +8,8 @@
 
 #include "map_encoding.hpp"
 #include "map_header.hpp"
+#include "map_schema.hpp"
+#include "map_upgrade.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/map_database.hpp"
 #include "sqlite.hpp"
@@ -84,12 +86,13 @@ void writeState(const SqliteDatabase& database, const MapUpdate& u) {
 
 void writeBlocks(const SqliteDatabase& database, const MapUpdate& update) {
   cutTable(database, "blocks", update.block_count);
-  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3)");
+  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3, ?4)");
   for (const BlockRecord& block : update.blocks) {
     const std::string bytes = encode(block.surfels);
     row.bind(1, std::int64_t{block.index});
-    row.bind(2, bytes);
-    row.bind(3, checksumOf(bytes));
+    row.bind(2, std::int64_t{block.fragment});
+    row.bind(3, bytes);
+    row.bind(4, checksumOf(bytes));
     row.run();
   }
 }
@@ -168,7 +171,7 @@ std::vector<BlockRecord> changedBlocks(const SurfelMap& map, int since_frame) {
   for (std::size_t i = 0; i < map.blocks().size(); ++i) {
     const SurfelBlock& block = map.blocks()[i];
     if (block.changed < since_frame) continue;
-    records.push_back({static_cast<std::uint32_t>(i), block.surfels});
+    records.push_back({static_cast<std::uint32_t>(i), block.fragment, block.surfels});
   }
   return records;
 }
@@ -177,14 +180,16 @@ struct MapWriter::State {
   SqliteDatabase database;
   std::vector<Keyframe> keyframes;  // as written
   std::vector<PoseConstraint> constraints;
+  bool is_old = false;  // of a version before: the first write brings all that differs
 };
 
 MapWriter::MapWriter(const std::string& path, Mode mode)
     : state_(new State{mode == Mode::create ? openNew(path)
                                             : SqliteDatabase(path, SqliteDatabase::Access::write),
                        {},
-                       {}}) {
-  if (mode == Mode::extend) checkMapFile(state_->database);
+                       {},
+                       false}) {
+  if (mode == Mode::extend) state_->is_old = checkMapFile(state_->database) < kMapVersion;
   setUp(state_->database);
   if (mode == Mode::create) makeMapTables(state_->database);
   setClosed(state_->database, false);
@@ -204,6 +209,7 @@ MapWriter::~MapWriter() {
 void MapWriter::write(const MapUpdate& update) {
   const SqliteDatabase& database = state_->database;
   SqliteTransaction transaction(database);
+  if (state_->is_old) upgradeTables(database);
   writeState(database, update);
   writeBlocks(database, update);
   writeKeyframes(database, update, state_->keyframes);
@@ -212,6 +218,7 @@ void MapWriter::write(const MapUpdate& update) {
   writeFrames(database, update.frames);
   writeBlobs(database, update.blobs);
   transaction.commit();
+  state_->is_old = false;
   state_->keyframes = update.keyframes;
   state_->constraints = update.constraints;
   emptyLog(database);

@@ -52,7 +52,7 @@ std::vector<KeyframeView> readViews(const MapReader& reader, const MapContent& c
     if (blob == content.blobs.end() || images.grey.empty()) continue;
     KeyframeView view;
     view.id = keyframe.id;
-    view.T_map_camera = keyframe.T_map_camera;
+    view.pose = {keyframe.fragment, keyframe.T_map_camera};
     view.intensity = images.grey;
     view.depth_mm = images.depth_mm;
     if (blob->second.size() != kThumbnailBytes) {

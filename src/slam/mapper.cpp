@@ -13,7 +13,15 @@ namespace {
 // A guess that lies further from the last view than this sees too much that the view does not show.
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
 // Neither tracking nor the segmenter looks at anything farther than 8 m.
-const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
+constexpr double kViewDepth_m = 8.0;
+
+RenderOptions viewOptions(int fragment) {
+  RenderOptions options;
+  options.max_depth_m = kViewDepth_m;
+  options.fragment = fragment;
+  return options;
+}
+
 }  // namespace
 
 /// Why the frame cannot follow the ones before; empty when it can.
@@ -45,31 +53,37 @@ TrackingState Mapper::State::state() const {
 }
 
 /// The last view where it serves, else one of its own.
-RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
-  const Eigen::Isometry3d step = view.T_map_camera.inverse() * T;
-  if (step.translation().norm() < kSameViewShift_m && angleOf(step) < kSameViewTurn_rad) {
+RenderedModel Mapper::State::modelFrom(const MapPose& pose) {
+  const Eigen::Isometry3d step = view.T_map_camera.inverse() * pose.T_map_camera;
+  if (view.fragment == pose.fragment && step.translation().norm() < kSameViewShift_m &&
+      angleOf(step) < kSameViewTurn_rad) {
     return {model, view.T_map_camera};
   }
-  model_elsewhere.assign(viewFrom(T));
-  return {model_elsewhere, T};
+  model_elsewhere.assign(viewFrom(pose));
+  return {model_elsewhere, pose.T_map_camera};
 }
 
-const ModelView& Mapper::State::viewFrom(const Eigen::Isometry3d& T) {
-  renderer.render(map, frame.camera, T, kViewOptions, elsewhere);
+const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), elsewhere);
   return elsewhere;
 }
 
 Location Mapper::State::locate(const StaticFrame& input) {
   const std::int64_t stamp_ns = input.frame.stamp_ns;
   if (map.frame() >= 0) {
+    const int where = localiser.fragment();
     MapRenderers render;
-    render.model = [this](const Eigen::Isometry3d& T) { return modelFrom(T); };
-    render.view = [this](const Eigen::Isometry3d& T) -> const ModelView& { return viewFrom(T); };
+    render.model = [=](const Eigen::Isometry3d& T) { return modelFrom({where, T}); };
+    render.view = [=](const Eigen::Isometry3d& T) -> const ModelView& {
+      return viewFrom({where, T});
+    };
     return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render);
   }
   const auto needed =
       config.tracking.min_view_fraction * static_cast<double>(frame.depth_m.total());
-  if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
+  if (frame.valid_pixels >= needed) {
+    return localiser.begin(frame, stamp_ns, {kFirstFragment, T_map_start});
+  }
   Location nowhere;
   nowhere.outcome = FrameOutcome::no_depth;
   nowhere.T_map_camera = T_map_start;
@@ -80,6 +94,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   // Colors of the map are those of its first exposure.
   const Brightness& b = location.tracking.brightness;
   FusionOptions options;
+  options.fragment = location.fragment;
   options.may_remove_stable = !location.is_recent_return;
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
@@ -92,7 +107,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
     options.input_depth_m = input_depth_m;
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
-  showFrom(location.T_map_camera, true);
+  showFrom(location.pose(), true);
   view.stamp_ns = last_stamp_ns;
 }
 
@@ -100,13 +115,13 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
 /// none.
 void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();
-  showFrom(location.T_map_camera, fill);
+  showFrom(location.pose(), fill);
   view.stamp_ns = last_stamp_ns;
 }
 
 /// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
-void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
-  renderer.render(map, frame.camera, T_map_camera, kViewOptions, view);
+void Mapper::State::showFrom(const MapPose& pose, bool fill) {
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), view);
   model.assign(view, fill ? &frame.levels[0] : nullptr);
 }
 
@@ -136,22 +151,20 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   } else if (location.outcome == FrameOutcome::fused && !s.may_change) {
     s.follow(location, false);
   } else if (location.outcome == FrameOutcome::fused) {
-    if (location.is_return) {
-      s.fragment = fragmentAt(location.T_map_camera);
-      s.map_at_loss.reset();  // if that is a fragment, it is not to be found in itself
-    }
+    // If it is back in a fragment whose place is not known, that is not to be found in itself.
+    if (location.is_return) s.map_at_loss.reset();
     s.fuse(input, location);
     s.keep(input, location);
     s.askForFragment();
   } else if (location.state == TrackingState::lost) {
     s.askForPlace();
   }
-  if (location.located) s.back_end.record(input.frame.stamp_ns, location.T_map_camera);
+  if (location.located) s.back_end.record(input.frame.stamp_ns, location.pose());
   status.fusion_ms = watch.lapMs();
   status.state = location.state;
   status.outcome = location.outcome;
-  status.located = location.located && s.fragment == 0;
-  status.fragment = s.fragment;
+  status.located = location.located && s.isPlaceKnown();
+  status.fragment = location.fragment;
   status.detail = location.detail;
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
@@ -181,9 +194,9 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.state = state_->state();
   status.outcome = outcome;
   status.T_map_camera =
-      state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
+      state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose().T_map_camera;
   status.surfels = state_->map.size();
-  status.fragment = state_->fragment;
+  status.fragment = state_->fragment();
   status.map_version = state_->back_end.graph().version();
   status.map_full = state_->map.refused() > 0;
   return status;
@@ -236,7 +249,8 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();
-  s.fragment = s.last_fragment = s.frames_to_place = 0;
+  s.last_fragment = kFirstFragment;
+  s.frames_to_place = 0;
   s.lost_s.reset();
   s.at_question = {};
   s.seen_at.reset();

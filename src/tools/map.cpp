@@ -59,7 +59,7 @@ void printInfo(const std::string& file) {
 void check(const std::string& file) {
   const MapReader reader(file);
   const MapContent content = reader.content();
-  const std::size_t surfels = reader.surfels().size();
+  const std::size_t surfels = surfelsIn(reader.surfels());
   for (const Keyframe& k : content.keyframes) reader.images(k.id);
   if (!reader.missing().empty()) {
     throw InputError(reader.missing() + "; there are " + std::to_string(content.frames.size()) +
@@ -80,10 +80,13 @@ void repair(const std::string& file, const std::string& repaired) {
   if (repair.lost.empty()) std::printf("nothing is lost\n");
 }
 
-/// The poses of all frames, as the graph has them now, in the order of their stamps.
+/// The poses of all frames of the first fragment, as the graph has them now, in the order of their
+/// stamps.
 Trajectory trajectoryOf(const MapContent& content) {
   Trajectory trajectory;
   for (const FrameRecord& frame : content.frames) {
+    const auto keyframe = static_cast<std::size_t>(frame.pose.keyframe);
+    if (content.keyframes[keyframe].fragment != kFirstFragment) continue;
     trajectory.push_back({frame.stamp_ns, poseOf(frame.pose, content.keyframes)});
   }
   std::stable_sort(trajectory.begin(), trajectory.end(),

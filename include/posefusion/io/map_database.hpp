@@ -39,6 +39,7 @@ struct MapContent {
 /// A block of surfels by its place in SurfelMap::blocks().
 struct BlockRecord {
   std::uint32_t index = 0;
+  int fragment = kFirstFragment;
   SurfelArrays surfels;
 };
 
@@ -61,7 +62,8 @@ class MapWriter {
  public:
   enum class Mode {
     create,  ///< the file must not exist
-    extend   ///< the file must be a map; the first write() must bring all blocks
+    extend   ///< the file must be a map; the first write() must bring all blocks, and makes a file
+             ///< of an older version one of the present version
   };
 
   /// Throws InputError naming the file.
@@ -88,7 +90,7 @@ struct MapCounts {
   std::size_t blocks = 0, surfels = 0, images = 0, bytes = 0;
 };
 
-/// Reads a map file without changing it.
+/// Reads a map file, of this version or an older one, without changing it.
 class MapReader {
  public:
   /// Throws InputError naming the file when it is no map, damaged, of a newer version or in use.
@@ -99,7 +101,7 @@ class MapReader {
 
   /// Each throws InputError naming the file and what in it cannot be.
   MapContent content() const;
-  SurfelArrays surfels() const;  ///< block by block
+  std::vector<FragmentSurfels> surfels() const;  ///< block by block, as SurfelMap::parts()
   /// Both images are empty when none are stored.
   KeyframeImages images(int keyframe) const;
   MapCounts counts() const;

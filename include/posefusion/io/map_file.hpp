@@ -7,9 +7,9 @@
 
 namespace pf {
 
-/// Writes the stable surfels, in the order in which they were made, as binary little-endian PLY:
-/// float x y z nx ny nz (metres, moved by `T_file_map`), uchar red green blue, float radius
-/// confidence. Returns their number. Throws InputError naming the file.
+/// Writes the stable surfels of the first fragment, in the order in which they were made, as binary
+/// little-endian PLY: float x y z nx ny nz (metres, moved by `T_file_map`), uchar red green blue,
+/// float radius confidence. Returns their number. Throws InputError naming the file.
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map = Eigen::Isometry3d::Identity());
 

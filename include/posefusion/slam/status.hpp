@@ -42,8 +42,8 @@ struct FrameStatus {
   std::int64_t stamp_ns = 0;
   TrackingState state = TrackingState::initializing;
   FrameOutcome outcome = FrameOutcome::fused;
-  bool located = false;  ///< the pose is this frame's, in fragment 0; else no pose is known
-  int fragment = 0;      ///< piece of the map that the pose is in (see graph/fragments.hpp)
+  bool located = false;  ///< the pose is this frame's, in the first fragment; else none is known
+  int fragment = kFirstFragment;  ///< that the pose is in
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
   SparseMotion motion;           ///< since the frame before
