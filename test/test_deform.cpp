@@ -125,7 +125,9 @@ TEST(Deform, OneFragmentJoinsAnotherAndThatStays) {
     EXPECT_EQ(joined, 2 * wall().size());
     for (std::size_t k = 0; k < before.blocks().size(); ++k) {
       const SurfelBlock &old = before.blocks()[k], &now = map.blocks()[k];
-      if (old.fragment == 0) EXPECT_EQ(old.surfels.x, now.surfels.x);
+      if (old.fragment == 0) {
+        EXPECT_EQ(old.surfels.x, now.surfels.x);
+      }
       if (old.fragment != 1) continue;
       ASSERT_GE(now.surfels.size(), old.surfels.size());
       for (std::size_t i = 0; i < old.surfels.size(); ++i) {

@@ -137,6 +137,45 @@ TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
   EXPECT_LT(run.errorM(39), 0.02);
 }
 
+/// Covers the camera, uncovers it at a frame, and tells where that is; it is believed.
+void findAt(Carried& run, int index, const MapPose& pose) {
+  for (int i = 0; i < kCovered; ++i) run.see(index, 0);
+  run.mapper_.introduceCloser();  // so that it asks
+  run.see(index);
+  ASSERT_EQ(run.status_.state, TrackingState::lost);
+  LoopAnswer answer;
+  answer.asked_for_place = true;
+  answer.place.emplace();
+  answer.place->doubt = PlaceDoubt::none;
+  answer.place->fragment = pose.fragment;
+  answer.place->alignment.T_map_camera = pose.T_map_camera;
+  run.mapper_.take(answer);
+  for (int i = 0; i < 5; ++i) run.see(index);
+  ASSERT_EQ(run.status_.state, TrackingState::tracking) << run.status_.detail;
+  EXPECT_EQ(run.status_.fragment, pose.fragment);
+  const auto& keyframes = run.mapper_.backEnd().graph().keyframes();
+  EXPECT_EQ(keyframes.back().fragment, pose.fragment);
+  const PoseConstraint& tie = run.mapper_.backEnd().graph().constraints().back();
+  EXPECT_EQ(tie.to, keyframes.back().id) << "what comes back is tied";
+  EXPECT_EQ(keyframes[static_cast<std::size_t>(tie.from)].fragment, pose.fragment);
+}
+
+TEST(Fragments, ACameraThatIsLostInOneIsFoundInAnother) {
+  Carried run(Carried::config(), false);
+  run.see(kMapped - 1);
+  const MapPose away{1, run.status_.T_map_camera};
+  ASSERT_EQ(run.status_.fragment, away.fragment);
+  const std::size_t told = run.mapper_.backEnd().trajectory().size();
+  findAt(run, 10, {kFirstFragment, room().pose(10)});
+  EXPECT_TRUE(run.status_.located);
+  EXPECT_LT(run.errorM(10), 0.02);
+  EXPECT_GT(run.mapper_.backEnd().trajectory().size(), told);
+  findAt(run, kMapped - 1, away);
+  EXPECT_FALSE(run.status_.located);
+  const Eigen::Isometry3d off = away.T_map_camera.inverse() * run.status_.T_map_camera;
+  EXPECT_LT(off.translation().norm(), 0.02);
+}
+
 TEST(Fragments, AreJoinedWhenTheirPlaceIsFound) {
   Carried run(Carried::config(), true);
   int joined_after = 0;

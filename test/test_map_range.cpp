@@ -2,7 +2,7 @@
 // Nothing depends on where in the map frame the camera is.
 #include <gtest/gtest.h>
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "posefusion/core/se3.hpp"
@@ -13,17 +13,19 @@
 namespace pf {
 namespace {
 
-constexpr int kMapped = 60, kCovered = 12, kAfter = 25;
+constexpr int kMapped = 40, kWalked = 15, kCovered = 12, kAfter = 25;
 
 const SimulatedSequence& room() { return exactBox<kMapped>(); }
 
 /// Maps the room from a map that begins at `start_m`.
 class Walk {
  public:
-  explicit Walk(const Eigen::Vector3d& start_m) : mapper_(config()) {
+  explicit Walk(const Eigen::Vector3d& start_m)
+      : mapper_(std::make_unique<Mapper>(config())),
+        loops_(
+            std::make_unique<LoopThread>(config().loop, config().tracking, AnswerTime::after_lag)) {
     T_map_start_.translation() = start_m;
-    mapper_.reset(T_map_start_);
-    loops_.emplace(config().loop, config().tracking, AnswerTime::after_lag);
+    mapper_->reset(T_map_start_);
   }
 
   void see(int index, bool covered = false) {
@@ -31,8 +33,8 @@ class Walk {
     input.frame = room().frame(index).frame;
     input.frame.stamp_ns = stamp_ns_ += 33333333;
     if (covered) input.frame.depth.setTo(0);
-    statuses.push_back(mapper_.process(input));
-    loops_->serve(mapper_);
+    statuses.push_back(mapper_->process(input));
+    loops_->serve(*mapper_);
   }
 
   /// Covers the camera, and uncovers it elsewhere.
@@ -45,7 +47,7 @@ class Walk {
     return T_map_start_.inverse() * statuses[i].T_map_camera;
   }
 
-  const Mapper& mapper() const { return mapper_; }
+  const Mapper& mapper() const { return *mapper_; }
 
   std::vector<FrameStatus> statuses;
 
@@ -56,13 +58,13 @@ class Walk {
     return c;
   }
 
-  Mapper mapper_;
-  std::optional<LoopThread> loops_;
+  std::unique_ptr<Mapper> mapper_;
+  std::unique_ptr<LoopThread> loops_;
   Eigen::Isometry3d T_map_start_ = Eigen::Isometry3d::Identity();
   std::int64_t stamp_ns_ = 0;
 };
 
-void expectSame(const Walk& a, const Walk& b, double within_m) {
+void expectSame(const Walk& a, const Walk& b, double within_m, double within_deg = 0.05) {
   constexpr double kDegree = M_PI / 180;
   ASSERT_EQ(a.statuses.size(), b.statuses.size());
   for (std::size_t i = 0; i < a.statuses.size(); ++i) {
@@ -73,7 +75,7 @@ void expectSame(const Walk& a, const Walk& b, double within_m) {
     EXPECT_EQ(one.fragment, other.fragment) << i;
     const Eigen::Isometry3d off = a.poseFromStart(i).inverse() * b.poseFromStart(i);
     EXPECT_LT(off.translation().norm(), within_m) << i;
-    EXPECT_LT(angleOf(off), 0.05 * kDegree) << i;
+    EXPECT_LT(angleOf(off), within_deg * kDegree) << i;
   }
   EXPECT_EQ(a.mapper().map().frame(), b.mapper().map().frame()) << "frames fused";
   EXPECT_EQ(a.mapper().backEnd().trajectory().size(), b.mapper().backEnd().trajectory().size());
@@ -83,7 +85,7 @@ void expectSame(const Walk& a, const Walk& b, double within_m) {
 
 Walk walked(const Eigen::Vector3d& start_m) {
   Walk walk(start_m);
-  for (int i = 0; i < kMapped / 2; ++i) walk.see(i);
+  for (int i = 0; i < kWalked; ++i) walk.see(i);
   for (const FrameStatus& status : walk.statuses) {
     EXPECT_TRUE(status.located) << start_m.transpose() << ": " << status.detail;
     EXPECT_EQ(status.fragment, 0);
@@ -124,7 +126,8 @@ TEST(MapRange, ALostCameraIsFoundWhereverTheMapBegins) {
     walk.carry();
     EXPECT_EQ(walk.statuses[kMapped + kCovered].state, TrackingState::lost) << start_m.transpose();
     EXPECT_TRUE(walk.statuses.back().located) << start_m.transpose();
-    expectSame(walks.front(), walk, 2e-3);
+    // The search draws the map from voxels, which lie otherwise in each.
+    expectSame(walks.front(), walk, 5e-3, 0.2);
   }
 }
 

@@ -137,8 +137,9 @@ TEST(PlaceSearch, FindsACameraThatLiesOnItsSide) {
     Eigen::Isometry3d lying = standing;
     lying.translation() -= (high_m - 0.35) * room().up;
     lying.linear() *= Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    const auto found = searchPlaces(room().points, placeQuery(seenFrom(lying)),
-                                    afterFall(standing, 0.4, 0.3), room().up, PlaceSearchConfig{});
+    const auto found =
+        searchPlaces(room().points, placeQuery(seenFrom(lying)), {0, afterFall(standing, 0.4, 0.3)},
+                     room().up, PlaceSearchConfig{});
     ASSERT_FALSE(found.empty());
     EXPECT_LT(metresOff(found[0].pose.T_map_camera, lying), 0.25) << roll;
     EXPECT_LT(radiansOff(found[0].pose.T_map_camera, lying), 0.175) << roll;
@@ -147,7 +148,7 @@ TEST(PlaceSearch, FindsACameraThatLiesOnItsSide) {
 
 TEST(PlaceSearch, CandidatesAreSortedAndApart) {
   const auto found = searchPlaces(room().points, placeQuery(room().frame(3)),
-                                  room().sequence.pose(0), room().up, PlaceSearchConfig{});
+                                  {0, room().sequence.pose(0)}, room().up, PlaceSearchConfig{});
   ASSERT_GT(found.size(), 1U);
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_GE(found[i - 1].score, found[i].score);
@@ -160,10 +161,10 @@ TEST(PlaceSearch, CandidatesAreSortedAndApart) {
 TEST(PlaceSearch, GivesNothingOfNothing) {
   const PlaceQuery query = placeQuery(room().frame(0));
   const Eigen::Isometry3d T = room().sequence.pose(0);
-  EXPECT_TRUE(searchPlaces(MapPoints{}, query, T, room().up, PlaceSearchConfig{}).empty());
+  EXPECT_TRUE(searchPlaces(MapPoints{}, query, {0, T}, room().up, PlaceSearchConfig{}).empty());
   PlaceQuery blind = query;
   blind.depth_m = cv::Mat::zeros(query.depth_m.size(), CV_32FC1);
-  EXPECT_TRUE(searchPlaces(room().points, blind, T, room().up, PlaceSearchConfig{}).empty());
+  EXPECT_TRUE(searchPlaces(room().points, blind, {0, T}, room().up, PlaceSearchConfig{}).empty());
 }
 
 TEST(PlaceSearch, GivesTheSameBitsForAnyNumberOfThreads) {
