@@ -62,8 +62,8 @@ class MappingSession {
   std::string startAnew(std::string& lost);
 
   /// The clock was put back: saves, and goes on in this map, in which the camera is looked for.
-  /// `unsaved`: that it could not be saved, and why; empty where it was. Returns what was written where,
-  /// empty for nothing.
+  /// `unsaved`: that it could not be saved, and why; empty where it was. Returns what was written
+  /// where, empty for nothing.
   std::string restartClock(std::string& unsaved);
 
   /// At the end: takes in what the closer still has to say, and saves. Returns what was written

@@ -23,6 +23,9 @@ class StatusOutput {
 
   void publish(const TrackingStatusMsg& status);
 
+  /// Takes the text away: nobody knows the state any more.
+  void clearText();
+
  private:
   std::mutex mutex_;
   ros::Publisher status_, text_;

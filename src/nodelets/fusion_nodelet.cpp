@@ -40,6 +40,7 @@ class FusionNodelet : public ChainNodelet {
     if (services_) services_->shutdown();
     if (map_output_) worker_->post([this] { map_output_->close(); }).get();
     worker_.reset();
+    status_.clearText();                      // it is sent while the map is saved
     if (!session_) return;                    // start() may have failed anywhere
     if (is_lossless_) closer_->hurry(false);  // what it still has to say counts
     const std::string said = session_->finish();

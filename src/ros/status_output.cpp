@@ -74,4 +74,11 @@ void StatusOutput::publish(const TrackingStatusMsg& status) {
   shown_ = text;
 }
 
+void StatusOutput::clearText() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!text_ || text_.getNumSubscribers() == 0) return;
+  shown_.action = visualization_msgs::Marker::DELETE;
+  text_.publish(shown_);
+}
+
 }  // namespace posefusion_ros

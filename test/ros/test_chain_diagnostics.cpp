@@ -92,7 +92,7 @@ TEST(ChainDiagnostics, ALostCameraIsAnErrorThatSaysSinceWhen) {
 }
 
 TEST(ChainDiagnostics, AnotherCameraIsAnErrorThatNamesBoth) {
-  Chain chain("other_camera");
+  Chain chain("exchanged");
   const Diagnostics diagnostics(chain);
   ASSERT_TRUE(chain.load());
   const auto send = [&chain](int i, double more_px) {
@@ -126,7 +126,7 @@ TEST(ChainDiagnostics, AnotherCameraIsAnErrorThatNamesBoth) {
 }
 
 TEST(ChainDiagnostics, StampsOfAnotherClockAreAWarningThatSaysWhatToDo) {
-  Chain chain("other_clock");
+  Chain chain("clocks_differ");
   const Diagnostics diagnostics(chain);
   ASSERT_TRUE(chain.load());
   chain.process(toMessages(emptyRoom().frame(0).frame));  // stamps begin at 1000 s
