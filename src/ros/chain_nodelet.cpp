@@ -64,7 +64,9 @@ void ChainNodelet::passed(const ros::Time& stamp) {
 
 void ChainNodelet::noteOutcome(const ros::Time& stamp, std::uint8_t outcome) {
   hears_all_ = true;
-  if (outcome == TrackingStatusMsg::FUSED) return passed(stamp);
+  if (outcome == TrackingStatusMsg::FUSED || outcome == TrackingStatusMsg::LOCATED) {
+    return passed(stamp);
+  }
   watch_.givenUp(std::chrono::steady_clock::now(), outcome);
 }
 

@@ -149,6 +149,7 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   if (location.outcome == FrameOutcome::forced && location.located) {
     s.follow(location, true);
   } else if (location.outcome == FrameOutcome::fused && !s.may_change) {
+    location.outcome = FrameOutcome::located;
     s.follow(location, false);
   } else if (location.outcome == FrameOutcome::fused) {
     // If it is back in a fragment whose place is not known, that is not to be found in itself.

@@ -146,7 +146,7 @@ std::vector<FallFrame> framesOf(const Options& options, const SavedMap& saved,
   map.restore(saved.surfels, saved.frame);
   if (is_own) {
     const auto mapped = std::count_if(rows.begin(), rows.end(), [&](const StatusRow& row) {
-      return row.outcome == "fused" && row.stamp_ns < first_fall_ns;
+      return (row.outcome == "fused" || row.outcome == "located") && row.stamp_ns < first_fall_ns;
     });
     map.removeIf([&](const SurfelArrays& s, std::size_t i) { return s.created[i] >= mapped; });
   }

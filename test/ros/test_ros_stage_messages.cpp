@@ -88,6 +88,7 @@ TEST(StageMessages, StatusConstantsAreThoseOfTheCore) {
   using Status = TrackingStatusMsg;
   const std::map<FrameOutcome, int> outcomes = {
       {FrameOutcome::fused, Status::FUSED},
+      {FrameOutcome::located, Status::LOCATED},
       {FrameOutcome::bad_input, Status::BAD_INPUT},
       {FrameOutcome::blurred, Status::BLURRED},
       {FrameOutcome::no_depth, Status::NO_DEPTH},

@@ -20,7 +20,7 @@ enum class TrackingState {
 
 /// What became of a frame, and why it was not fused.
 enum class FrameOutcome {
-  fused,          ///< or, where the map must not change, would have been
+  fused,          ///< believed, and taken into the map
   bad_input,      ///< sizes, encodings or stamps that cannot be used
   blurred,        ///< dropped by the gate
   no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)
@@ -31,8 +31,14 @@ enum class FrameOutcome {
   disagrees,      ///< alignment and corners tell of different motions
   seen_through,   ///< the frame sees through too much of the model
   unproven,       ///< after a loss: looks right, but not for long enough
-  forced          ///< passed the blur gate only because too many were dropped before it
+  forced,         ///< passed the blur gate only because too many were dropped before it
+  located         ///< believed as one that is fused, in a map that must not change
 };
+
+/// Whether the frame was believed, so that there is nothing to complain of.
+inline bool isGood(FrameOutcome outcome) {
+  return outcome == FrameOutcome::fused || outcome == FrameOutcome::located;
+}
 
 std::string_view name(TrackingState state);
 std::string_view name(FrameOutcome outcome);
