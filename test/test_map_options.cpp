@@ -65,6 +65,9 @@ TEST_F(MapOptions, ARunGoesOnInTheMapOfAnother) {
   EXPECT_TRUE(readFile(map) == before);
   EXPECT_FALSE(fs::exists(own / "l/latest/map.pfdb"));
   EXPECT_NE(said.find("0 bad"), std::string::npos) << said;
+  const std::string summary = readFile(own / "l/latest/summary.json");
+  EXPECT_NE(summary.find("\"located\""), std::string::npos) << summary;
+  EXPECT_EQ(summary.find("\"fused\""), std::string::npos) << "nothing is taken into the map";
   EXPECT_NE(said.find("ATE"), std::string::npos) << said;
 
   ASSERT_EQ(run(with({"--output", own / "m", "--map", map})), 0) << said;

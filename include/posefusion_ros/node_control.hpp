@@ -15,6 +15,10 @@ bool isNodeUp(const std::string& name);
 /// `patience_s`.
 void endNodes(const std::vector<std::string>& names, double patience_s);
 
+/// Waits until a node has come up, but not longer than `patience_s` (wall), and then until it has
+/// ended, or this one is to end.
+void outwait(const std::string& name, double patience_s);
+
 /// The command line of the process that started this one; none where that cannot be told.
 std::vector<std::string> parentCommand();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/node_control.hpp"
 
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
 #include <ros/network.h>
@@ -87,6 +88,13 @@ void endNodes(const std::vector<std::string>& names, double patience_s) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
+}
+
+void outwait(const std::string& name, double patience_s) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
+  const auto look = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
+  while (ros::ok() && std::chrono::steady_clock::now() < end && !isNodeUp(name)) look();
+  while (ros::ok() && isNodeUp(name)) look();
 }
 
 }  // namespace posefusion_ros

@@ -40,8 +40,8 @@ using std::chrono::steady_clock;
 // In real time the chain may lose a frame without a word; silence then ends the replay.
 constexpr double kQuiet_s = 5.0;
 constexpr int kQueue = 100;
-constexpr double kEndPatience_s = 60;              // a large map takes its time to be saved
-constexpr std::chrono::seconds kStayPatience(10);  // until rviz is there
+constexpr double kEndPatience_s = 60;   // a large map takes its time to be saved
+constexpr double kStayPatience_s = 10;  // until rviz is there
 
 class Feeder {
  public:
@@ -173,10 +173,8 @@ class Feeder {
   }
 
   void onStatus(const TrackingStatusMsg::ConstPtr& status) {
-    std::string name(pf::name(static_cast<pf::FrameOutcome>(status->outcome)));
-    if (status->outcome == TrackingStatusMsg::DROPPED) name = status->reason;
-    if (status->outcome == TrackingStatusMsg::PAUSED) name = "paused";
-    if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
+    const bool is_dropped = status->outcome == TrackingStatusMsg::DROPPED;
+    const std::string name = is_dropped ? status->reason : outcomeName(status->outcome);
     {
       const std::lock_guard<std::mutex> lock(outcome_mutex_);
       ++outcomes_[name];
@@ -223,13 +221,9 @@ void endLaunch(const FeederSettings& settings, Feeder& feeder) {
   nodes.push_back(settings.manager);
   endNodes(nodes, kEndPatience_s);
   feeder.writeReport();
-  if (!settings.stays.empty()) {
-    const auto end = steady_clock::now() + kStayPatience;
-    const auto look = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
-    while (ros::ok() && steady_clock::now() < end && !isNodeUp(settings.stays)) look();
-    ROS_INFO("all is done; close %s to end", settings.stays.c_str());
-    while (ros::ok() && isNodeUp(settings.stays)) look();
-  }
+  if (settings.stays.empty()) return;
+  ROS_INFO("all is done; close %s to end", settings.stays.c_str());
+  outwait(settings.stays, kStayPatience_s);
 }
 
 /// The exit code.
