@@ -21,10 +21,16 @@ def run_folder(output):
     return folders[0] if folders else None
 
 
+def frames_in(map_file):
+    """How many frames with a pose a map holds."""
+    info = call(PROGRAMS / "posefusion_map", "info", map_file)
+    return next(int(line.split()[1]) for line in info.splitlines() if line.startswith("frames "))
+
+
 class Kill:
     """One run that is killed, and what is found then."""
-    def __init__(self, sequence, output, arguments, map_file):
-        self.output, self.map_file = output, map_file
+    def __init__(self, sequence, output, arguments, map_file, loaded):
+        self.output, self.map_file, self.loaded = output, map_file, loaded
         self.told = {}  # when each pose was told first
         shutil.rmtree(output, ignore_errors=True)
         self.run = subprocess.Popen([str(PROGRAMS / "posefusion_run"), str(sequence), "--output", str(output),
@@ -84,10 +90,10 @@ class Kill:
             if NO_MAP_YET in str(error):
                 return last - first
             raise
-        info = call(PROGRAMS / "posefusion_map", "info", found)
-        end = next(line.split()[-1] for line in info.splitlines() if line.startswith("time "))
-        # A map that is gone on in may end with a frame of the run before.
-        return max(0.0, last - self.told[end]) if end in self.told else last - first
+        # Poses are told and written in the same order; those of a map that is gone on in come before.
+        saved = frames_in(found) - self.loaded
+        times = sorted(self.told.values())
+        return last - first if saved <= 0 else last - times[min(saved, len(times)) - 1]
 
 
 class Kills(Runs):
@@ -110,7 +116,8 @@ class Kills(Runs):
         shutil.copyfile(source, copy)
         arguments = {"a new map": (), "on from a map": ("--map", copy),
                      "in place": ("--map", copy, "--continue")}[mode]
-        return Kill(sequence, output, arguments, copy if mode == "in place" else None)
+        return Kill(sequence, output, arguments, copy if mode == "in place" else None,
+                    frames_in(copy) if arguments else 0)
 
     def whole_run(self, sequence, source, mode):
         """Seconds that a run takes which is not killed."""
