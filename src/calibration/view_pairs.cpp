@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/calibration/view_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posefusion/calibration/pair_residual.hpp"
+#include "posefusion/core/parallel.hpp"
+#include "posefusion/graph/fragments.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::size_t kSamples = 150;  // patches of a view that are looked for in another
+constexpr double kFarthest_m = 6.0;    // between cameras: more than any depth used
+constexpr double kLeastFacing = 0.5;   // cosine between optical axes: 60 degrees, a field of view
+
+bool maySeeTheSame(const ViewSurface& a, const ViewSurface& b) {
+  const Eigen::Isometry3d &T_a = a.T_map_camera(), &T_b = b.T_map_camera();
+  return fragmentAt(T_a) == fragmentAt(T_b) &&
+         (T_a.translation() - T_b.translation()).norm() < kFarthest_m &&
+         T_a.linear().col(2).dot(T_b.linear().col(2)) > kLeastFacing;
+}
+
+double overlapOf(const ViewSurface& from, const ViewSurface& to, const PairLimits& limits) {
+  const auto& patches = from.patches();
+  if (patches.empty() || to.patches().empty()) return 0;
+  const Eigen::Isometry3d T_to_from = to.T_map_camera().inverse() * from.T_map_camera();
+  const std::size_t stride = std::max<std::size_t>(1, patches.size() / kSamples);
+  const DepthField none(2, 2);
+  std::size_t tried = 0, met = 0;
+  for (std::size_t i = 0; i < patches.size(); i += stride) {
+    ++tried;
+    const auto r = pairResidual(patches[i], from, to, T_to_from, none);
+    if (r && std::abs(r->e) * r->metres < limits.most_apart_m) ++met;
+  }
+  return static_cast<double>(met) / static_cast<double>(tried);
+}
+
+}  // namespace
+
+std::vector<ViewPair> overlappingPairs(const std::vector<ViewSurface>& surfaces,
+                                       const PairLimits& limits) {
+  std::vector<std::vector<ViewPair>> of_view(surfaces.size());
+  parallelFor(surfaces.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t j = i + 1; j < surfaces.size(); ++j) {
+        if (!maySeeTheSame(surfaces[i], surfaces[j])) continue;
+        const double overlap = std::min(overlapOf(surfaces[i], surfaces[j], limits),
+                                        overlapOf(surfaces[j], surfaces[i], limits));
+        if (overlap < limits.least_overlap) continue;
+        of_view[i].push_back(
+            {i, j, surfaces[j].T_map_camera().inverse() * surfaces[i].T_map_camera(), overlap});
+      }
+    }
+  });
+  std::vector<ViewPair> pairs;
+  for (const auto& found : of_view) {
+    const std::size_t taken = std::min(found.size(), limits.most_per_view);
+    for (std::size_t k = 0; k < taken; ++k) pairs.push_back(found[k * found.size() / taken]);
+  }
+  return pairs;
+}
+
+}  // namespace pf
