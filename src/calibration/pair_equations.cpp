@@ -2,6 +2,7 @@
 #include "posefusion/calibration/pair_equations.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,22 +11,31 @@ namespace {
 
 using PoseFieldBlock = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
+// Of a view that many patches are compared, spread over it: about eleven for a cell of the grid.
+constexpr std::size_t kPatches = 1000;
+
+template <typename Visit>
+void forSome(const std::vector<SurfacePatch>& patches, const Visit& visit) {
+  const std::size_t count = std::min(patches.size(), kPatches);
+  for (std::size_t i = 0; i < count; ++i) visit(patches[i * patches.size() / count]);
+}
+
 /// Calls visit(residual, by_x) for the patches of both views; by_x: derivative by the pair's twist.
 template <typename Visit>
 void forResiduals(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
                   const DepthField& field, const Vector6d& x, const Visit& visit) {
   const ViewSurface &a = surfaces[pair.from], &b = surfaces[pair.to];
   const Eigen::Isometry3d T_b_a = expSe3(x) * pair.T_to_from, T_a_b = T_b_a.inverse();
-  for (const SurfacePatch& patch : a.patches()) {
+  forSome(a.patches(), [&](const SurfacePatch& patch) {
     if (const auto r = pairResidual(patch, a, b, T_b_a, field)) visit(*r, r->by_pose);
-  }
+  });
   // exp(d) T_b_a is T_a_b exp(-d) the other way: exp(-Ad d) T_a_b.
   const Matrix6d back = -adjoint(T_a_b).transpose();
-  for (const SurfacePatch& patch : b.patches()) {
+  forSome(b.patches(), [&](const SurfacePatch& patch) {
     if (const auto r = pairResidual(patch, b, a, T_a_b, field)) {
       visit(*r, Vector6d(back * r->by_pose));
     }
-  }
+  });
 }
 
 Judged judged(const PairResidual& r) {
