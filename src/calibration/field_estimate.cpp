@@ -2,6 +2,8 @@
 #include "posefusion/calibration/field_estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "field_solver.hpp"
@@ -13,6 +15,9 @@ namespace {
 
 // One chance in a thousand that luck alone does as well.
 constexpr double kSignificant = 3.1;
+// Of many pairs the tiniest gain is no luck: what is taken out must be clearly more than what may
+// be put in, or a good camera would be made no better, or worse.
+constexpr double kSigmas = 3.0;
 // Fewer judging pairs give no standard error worth the name.
 constexpr std::size_t kFewestJudges = 10;
 
@@ -42,9 +47,16 @@ std::vector<ViewSurface> surfacesOf(const std::vector<CalibrationView>& views) {
   return surfaces;
 }
 
-std::string doubtOf(const KeptOut& judged) {
-  if (judged.significance > kSignificant) return {};
-  return "pairs that were kept out do not agree better by more than luck explains";
+std::string doubtOf(const FieldEstimate& estimate) {
+  if (!(estimate.kept_out.significance > kSignificant)) {
+    return "pairs that were kept out do not agree better by more than luck explains";
+  }
+  const double sigma = std::sqrt(estimate.covariance.diagonal().mean());
+  if (estimate.field.rms() > kSigmas * sigma) return {};
+  std::ostringstream text;
+  text << "the error found, " << estimate.field.rms() << " 1/m, is less than " << kSigmas
+       << " times what it is known to, " << sigma;
+  return text.str();
 }
 
 }  // namespace
@@ -75,7 +87,7 @@ FieldEstimate estimateField(const std::vector<CalibrationView>& views,
   estimate.residuals = solution.residuals;
   estimate.rest_per_m = solution.model.rest_per_m;
   estimate.kept_out = judgeField(judges, surfaces, estimate.field, solution.model);
-  estimate.reason = doubtOf(estimate.kept_out);
+  estimate.reason = doubtOf(estimate);
   estimate.worth_taking = estimate.reason.empty();
   return estimate;
 }

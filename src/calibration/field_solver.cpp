@@ -68,21 +68,22 @@ double restOf(const std::vector<ViewPair>& pairs, const std::vector<ViewSurface>
   return high;
 }
 
-/// A step with the mean of the field held at zero, and the covariance under that condition.
+/// The inverse of the equations where the mean of the field is held, and the step to a field whose
+/// mean is zero.
 struct Step {
+  Eigen::MatrixXd inverse;
   Eigen::VectorXd step;
-  Eigen::MatrixXd covariance;
 };
 
 Step solveStep(const FieldEquations& sum, const DepthField& field) {
   const Eigen::Index n = sum.g.size();
   const Eigen::MatrixXd inverse = sum.H.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n), toward = inverse * ones;
-  const Eigen::VectorXd free = -inverse * sum.g;
-  const double excess = free.sum() + static_cast<double>(n) * field.mean();
+  const double stiffness = ones.dot(toward);
   Step result;
-  result.step = free - toward * (excess / ones.dot(toward));
-  result.covariance = inverse - toward * toward.transpose() / ones.dot(toward);
+  result.inverse = inverse - toward * toward.transpose() / stiffness;
+  result.step =
+      -result.inverse * sum.g - toward * (static_cast<double>(n) * field.mean() / stiffness);
   return result;
 }
 
@@ -96,7 +97,7 @@ DepthField moved(const DepthField& field, const Eigen::VectorXd& step) {
 FieldEquations equationsOf(const std::vector<ViewPair>& pairs,
                            const std::vector<ViewSurface>& surfaces, const DepthField& field,
                            const std::vector<Vector6d>& poses, const PairModel& model,
-                           std::vector<PoseStep>& steps) {
+                           std::vector<PairStep>& steps) {
   return deterministicSum<FieldEquations>(
       pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
         FieldEquations sum;
@@ -105,6 +106,29 @@ FieldEquations equationsOf(const std::vector<ViewPair>& pairs,
         }
         return sum;
       });
+}
+
+/// Covariance by how much the views say different things (the sandwich of White 1980, clustered):
+/// what the errors of a view have in common, a pose or a rim, counts whole. The noise of the sensor
+/// alone promises too much.
+Eigen::MatrixXd scatterOf(const std::vector<ViewPair>& pairs,
+                          const std::vector<ViewSurface>& surfaces,
+                          const FieldEstimateConfig& config, const FieldSolution& solution,
+                          const std::vector<Vector6d>& poses) {
+  std::vector<PairStep> steps(pairs.size());
+  FieldEquations sum = equationsOf(pairs, surfaces, solution.field, poses, solution.model, steps);
+  const FieldEquations data = sum;
+  addPrior(solution.field, config, sum);
+  Eigen::MatrixXd scatter = sum.H - data.H;  // the prior's own part
+  Eigen::VectorXd of_view = Eigen::VectorXd::Zero(data.g.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    of_view += steps[i].g;
+    if (i + 1 < pairs.size() && pairs[i + 1].from == pairs[i].from) continue;
+    scatter.noalias() += of_view * of_view.transpose();
+    of_view.setZero();
+  }
+  const Eigen::MatrixXd inverse = solveStep(sum, solution.field).inverse;
+  return inverse * scatter * inverse;
 }
 
 double medianOf(std::vector<double>& values) {
@@ -149,7 +173,7 @@ FieldSolution solveField(const std::vector<ViewPair>& pairs,
   solution.field = DepthField(config.columns, config.rows);
   solution.model = config.model;
   std::vector<Vector6d> poses(pairs.size(), Vector6d::Zero());
-  std::vector<PoseStep> steps(pairs.size());
+  std::vector<PairStep> steps(pairs.size());
   for (int i = 0; i < config.steps; ++i) {
     if (i > 0) {
       solution.model.rest_per_m =
@@ -162,10 +186,10 @@ FieldSolution solveField(const std::vector<ViewPair>& pairs,
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       poses[k] += steps[k].own + steps[k].by_field * step.step;
     }
-    solution.covariance = step.covariance;
     solution.residuals = sum.residuals;
   }
   solution.field = solution.field.centred();
+  solution.covariance = scatterOf(pairs, surfaces, config, solution, poses);
   return solution;
 }
 

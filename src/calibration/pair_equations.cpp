@@ -76,7 +76,7 @@ struct NodeRow {
 };
 
 void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, FieldEquations& sum,
-                 PairSums& pair) {
+                 PairSums& pair, Eigen::VectorXd& g) {
   const NodeRow row(r);
   const Vector6d weighted = weight * by_x;
   pair.P.noalias() += weighted * by_x.transpose();
@@ -84,7 +84,7 @@ void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, Fie
   for (std::size_t i = 0; i < 8; ++i) {
     pair.C.col(row.node[i]) += weighted * row.value[i];
     const double wi = weight * row.value[i];
-    sum.g[row.node[i]] += wi * r.e;
+    g[row.node[i]] += wi * r.e;
     for (std::size_t j = 0; j < 8; ++j) sum.H(row.node[i], row.node[j]) += wi * row.value[j];
   }
   ++sum.residuals;
@@ -123,21 +123,23 @@ FieldEquations& FieldEquations::operator+=(const FieldEquations& other) {
 
 void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
              const DepthField& field, const Vector6d& x, const PairModel& model,
-             FieldEquations& equations, PoseStep& step) {
+             FieldEquations& equations, PairStep& step) {
   const auto nodes = static_cast<Eigen::Index>(field.nodes().size());
   if (equations.H.size() == 0) {
     equations.H.setZero(nodes, nodes);
     equations.g.setZero(nodes);
   }
   PairSums sums(nodes, x, model);
+  step.g.setZero(nodes);
   forResiduals(pair, surfaces, field, x, [&](const PairResidual& r, const Vector6d& by_x) {
-    addResidual(r, by_x, judged(r).weight(model), equations, sums);
+    addResidual(r, by_x, judged(r).weight(model), equations, sums, step.g);
   });
   const Eigen::LDLT<Matrix6d> P(sums.P);
   step.own = -P.solve(sums.p);
   step.by_field = -P.solve(sums.C);
   equations.H.noalias() += sums.C.transpose() * step.by_field;
-  equations.g.noalias() += sums.C.transpose() * step.own;
+  step.g.noalias() += sums.C.transpose() * step.own;
+  equations.g += step.g;
 }
 
 Vector6d fittedPose(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,

@@ -37,6 +37,12 @@ double overlapOf(const ViewSurface& from, const ViewSurface& to, const PairLimit
   return static_cast<double>(met) / static_cast<double>(tried);
 }
 
+/// Appends at most so many, evenly spread over all.
+void addSpread(const std::vector<ViewPair>& all, std::size_t most, std::vector<ViewPair>& out) {
+  const std::size_t count = std::min(all.size(), most);
+  for (std::size_t k = 0; k < count; ++k) out.push_back(all[k * all.size() / count]);
+}
+
 }  // namespace
 
 std::vector<ViewPair> overlappingPairs(const std::vector<ViewSurface>& surfaces,
@@ -55,11 +61,11 @@ std::vector<ViewPair> overlappingPairs(const std::vector<ViewSurface>& surfaces,
     }
   });
   std::vector<ViewPair> pairs;
-  for (const auto& found : of_view) {
-    const std::size_t taken = std::min(found.size(), limits.most_per_view);
-    for (std::size_t k = 0; k < taken; ++k) pairs.push_back(found[k * found.size() / taken]);
-  }
-  return pairs;
+  for (const auto& found : of_view) addSpread(found, limits.most_per_view, pairs);
+  if (pairs.size() <= limits.most_pairs) return pairs;
+  std::vector<ViewPair> fewer;
+  addSpread(pairs, limits.most_pairs, fewer);
+  return fewer;
 }
 
 }  // namespace pf

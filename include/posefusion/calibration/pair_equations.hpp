@@ -17,7 +17,7 @@ struct PairModel {
   /// How many patches share that error, as they lie in one cell of the grid.
   double patches_of_cell = 11;
   /// Standard deviation of the pose of a pair: loops and tracking leave it (m, rad).
-  double pose_sigma_m = 0.01, pose_sigma_rad = 0.005;
+  double pose_sigma_m = 0.03, pose_sigma_rad = 0.015;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
   double robust_scale = 2.0;
 };
@@ -46,10 +46,12 @@ struct FieldEquations {
   FieldEquations& operator+=(const FieldEquations& other);
 };
 
-/// How the pose of a pair follows from a step of the field: x += own + by_field * step.
-struct PoseStep {
+/// What one pair has to say.
+struct PairStep {
+  /// How its pose follows from a step of the field: x += own + by_field * step.
   Vector6d own = Vector6d::Zero();
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_field;
+  Eigen::VectorXd g;  ///< its part of FieldEquations::g
 };
 
 /// Adds a pair whose pose is `x` off to the equations of the field. The pose of the pair, normally
@@ -57,7 +59,7 @@ struct PoseStep {
 /// teaches the field nothing.
 void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
              const DepthField& field, const Vector6d& x, const PairModel& model,
-             FieldEquations& equations, PoseStep& step);
+             FieldEquations& equations, PairStep& step);
 
 /// The pose (twist x) that fits a pair best with the field as it is.
 Vector6d fittedPose(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,

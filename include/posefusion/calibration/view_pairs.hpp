@@ -18,8 +18,9 @@ struct ViewPair {
 
 /// What makes two views a pair.
 struct PairLimits {
-  double least_overlap = 0.2;
+  double least_overlap = 0.2;      ///< less leaves the pose of a pair too free
   std::size_t most_per_view = 24;  ///< pairs with later views, spread evenly over them
+  std::size_t most_pairs = 2000;   ///< spread over all views: seconds of work, and enough
   double most_apart_m = 0.25;      ///< surfaces further apart than this are two
 };
 
