@@ -54,14 +54,14 @@ TEST(CalibrationFile, refusesWhatIsWrongAndNamesIt) {
   const std::string good = readFile(path);
   const std::vector<std::pair<std::string, std::string>> hostile = {
       {"columns: 12", "columns: 13"},
-      {"columns: 12", "columns: 1"},
+      {"columns: 12", "columns: 3"},
       {"columns: 12", "columns: 1000000"},
       {"rows: 9", "rows: nine"},
       {"rows: 9\n", ""},
       {"nodes_per_m: [", "nodes_per_m: [nan, "},
       {"nodes_per_m: [\n  ", "nodes_per_m: [\n  9"},
-      {"model: inverse_depth_grid", "model: guess"},
-      {"model: inverse_depth_grid\n", ""},
+      {"model: inverse_depth_spline", "model: guess"},
+      {"model: inverse_depth_spline\n", ""},
       {"width: 640", "width: 0"},
       {"fx: 524.8", "fx: .inf"},
       {"fx: 524.8, ", ""},

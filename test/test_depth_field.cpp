@@ -14,14 +14,24 @@
 namespace pf {
 namespace {
 
-TEST(DepthField, isItsNodesAtTheNodesAndLinearBetween) {
-  const DepthField field(3, 2, {0.001, 0.002, 0.004, -0.001, 0.0, 0.003});
-  EXPECT_DOUBLE_EQ(field.at(0, 0), 0.001);
-  EXPECT_DOUBLE_EQ(field.at(0.5, 0), 0.002);
-  EXPECT_DOUBLE_EQ(field.at(1, 1), 0.003);
-  EXPECT_NEAR(field.at(0.25, 0), 0.0015, 1e-15);
-  EXPECT_NEAR(field.at(0.5, 0.5), 0.001, 1e-15);
+/// All nodes the same.
+DepthField flat(double per_m) { return {4, 4, std::vector<double>(16, per_m)}; }
+
+TEST(DepthField, weighsAllOfItsNodesTogetherOnce) {
+  for (const double x : {0.0, 0.31, 1.0}) EXPECT_NEAR(flat(0.002).at(x, 1 - x), 0.002, 1e-17);
+  const DepthField field = test::roomField();
   EXPECT_DOUBLE_EQ(field.at(-3, 7), field.at(0, 1)) << "outside counts as on the border";
+}
+
+TEST(DepthField, followsASmoothFunctionWithFewNodes) {
+  const auto d = [](double x, double y) { return 0.004 * std::sin(9 * x + 1) * std::cos(7 * y); };
+  const DepthField field = fittedField(12, 9, d);
+  for (int i = 0; i < 200; ++i) {
+    const double x = (i % 20) / 19.0, y = (i / 20) / 9.0;
+    EXPECT_NEAR(field.at(x, y), d(x, y), 0.0001) << x << " " << y;
+  }
+  const DepthField linear = fittedField(5, 4, [](double x, double y) { return x - 2 * y; });
+  EXPECT_NEAR(linear.at(0.3, 0.7), 0.3 - 1.4, 1e-9);
 }
 
 TEST(DepthField, saysHowItsWeightsChange) {
@@ -29,7 +39,7 @@ TEST(DepthField, saysHowItsWeightsChange) {
   const double x = 0.413, y = 0.777, h = 1e-6;
   const FieldWeights w = field.weights(x, y);
   double by_x = 0, by_y = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
     by_x += w.by_x[k] * field.nodes()[static_cast<std::size_t>(w.node[k])];
     by_y += w.by_y[k] * field.nodes()[static_cast<std::size_t>(w.node[k])];
   }
@@ -48,7 +58,7 @@ TEST(DepthField, inverseUndoesIt) {
 }
 
 TEST(DepthField, oneAfterAnotherIsTheirComposition) {
-  const DepthField a = test::roomField(), b = test::roomField(7, 5);
+  const DepthField a = test::roomField(), b = test::roomField().inverse().then(DepthField());
   const DepthField both = a.then(b);
   for (int i = 0; i < 12; ++i) {
     const double x = i / 11.0, z = 3.1;  // on nodes of a
@@ -58,16 +68,18 @@ TEST(DepthField, oneAfterAnotherIsTheirComposition) {
 }
 
 TEST(DepthField, centredHasNoMean) {
-  const DepthField field(2, 2, {0.004, 0.001, 0.002, 0.001});
+  const DepthField field =
+      test::roomField().then(DepthField(12, 9, std::vector<double>(108, 0.002)));
   EXPECT_NEAR(field.centred().mean(), 0, 1e-18);
   EXPECT_NEAR(compare(field, field.centred()).rms_difference, 0, 1e-15);
   EXPECT_NEAR(compare(field, field.inverse()).correlation, -1, 1e-12);
 }
 
 TEST(DepthField, refusesWhatIsNoGrid) {
-  EXPECT_THROW(DepthField(1, 9), std::invalid_argument);
-  EXPECT_THROW(DepthField(2, 2, {0, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(DepthField(2, 2, {0, 0, 0, std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(DepthField(3, 9), std::invalid_argument);
+  EXPECT_THROW(flat(0).then(DepthField(5, 4)), std::invalid_argument);
+  EXPECT_THROW(DepthField(4, 4, std::vector<double>(15)), std::invalid_argument);
+  EXPECT_THROW(flat(std::nan("")), std::invalid_argument);
 }
 
 TEST(DepthCorrection, correctsEachPixelAsTheFieldSays) {
@@ -99,11 +111,10 @@ TEST(DepthCorrection, whatIsNoDepthStaysNone) {
   const float infinite = std::numeric_limits<float>::infinity();
   const cv::Mat metres = (cv::Mat_<float>(2, 3) << 0, -1, std::nanf(""), infinite, 1e30F, 400.0F);
   cv::Mat out;
-  DepthCorrection(DepthField(2, 2, {-0.003, -0.003, -0.003, -0.003}), {3, 2}).apply(metres, 0, out);
+  DepthCorrection(flat(-0.003), {3, 2}).apply(metres, 0, out);
   EXPECT_EQ(cv::countNonZero(out), 0) << "beyond 1/0.003 m there is nothing: " << out;
   const cv::Mat units = (cv::Mat_<std::uint16_t>(2, 2) << 0, 1000, 60000, 65535);
-  DepthCorrection(DepthField(2, 2, {-0.003, -0.003, -0.003, -0.003}), {2, 2})
-      .apply(units, 0.001, out);
+  DepthCorrection(flat(-0.003), {2, 2}).apply(units, 0.001, out);
   EXPECT_EQ(out.at<std::uint16_t>(0, 0), 0);
   EXPECT_EQ(out.at<std::uint16_t>(0, 1), 1003);
   EXPECT_EQ(out.at<std::uint16_t>(1, 0), 0) << "73 m does not fit";

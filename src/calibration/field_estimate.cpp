@@ -47,15 +47,30 @@ std::vector<ViewSurface> surfacesOf(const std::vector<CalibrationView>& views) {
   return surfaces;
 }
 
+/// Standard deviation of the field, RMS over the image.
+double sigmaOf(const DepthField& field, const Eigen::MatrixXd& covariance) {
+  constexpr int kAcross = 32, kDown = 24;
+  double sum = 0;
+  for (int i = 0; i < kAcross * kDown; ++i) {
+    const FieldWeights w =
+        field.weights((i % kAcross + 0.5) / kAcross, (i / kAcross + 0.5) / kDown);
+    for (std::size_t a = 0; a < FieldWeights::kNodes; ++a) {
+      for (std::size_t b = 0; b < FieldWeights::kNodes; ++b) {
+        sum += w.weight[a] * w.weight[b] * covariance(w.node[a], w.node[b]);
+      }
+    }
+  }
+  return std::sqrt(sum / (kAcross * kDown));
+}
+
 std::string doubtOf(const FieldEstimate& estimate) {
   if (!(estimate.kept_out.significance > kSignificant)) {
     return "pairs that were kept out do not agree better by more than luck explains";
   }
-  const double sigma = std::sqrt(estimate.covariance.diagonal().mean());
-  if (estimate.field.rms() > kSigmas * sigma) return {};
+  if (estimate.field.rms() > kSigmas * estimate.sigma_per_m) return {};
   std::ostringstream text;
   text << "the error found, " << estimate.field.rms() << " 1/m, is less than " << kSigmas
-       << " times what it is known to, " << sigma;
+       << " times what it is known to, " << estimate.sigma_per_m;
   return text.str();
 }
 
@@ -84,6 +99,7 @@ FieldEstimate estimateField(const std::vector<CalibrationView>& views,
   FieldSolution solution = solveField(learned, surfaces, config);
   estimate.field = std::move(solution.field);
   estimate.covariance = std::move(solution.covariance);
+  estimate.sigma_per_m = sigmaOf(estimate.field, estimate.covariance);
   estimate.residuals = solution.residuals;
   estimate.rest_per_m = solution.model.rest_per_m;
   estimate.kept_out = judgeField(judges, surfaces, estimate.field, solution.model);

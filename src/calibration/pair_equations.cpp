@@ -60,17 +60,18 @@ struct PairSums {
   }
 };
 
-/// The derivatives of a residual by the eight nodes (some twice) that it depends on.
+/// The derivatives of a residual by the nodes (some twice) that it depends on.
 struct NodeRow {
-  std::array<Eigen::Index, 8> node;
-  std::array<double, 8> value;
+  static constexpr std::size_t kNodes = 2 * FieldWeights::kNodes;
+  std::array<Eigen::Index, kNodes> node;
+  std::array<double, kNodes> value;
 
   explicit NodeRow(const PairResidual& r) {
-    for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
       node[k] = r.at_from.node[k];
       value[k] = r.by_from * r.at_from.weight[k];
-      node[k + 4] = r.at_to.node[k];
-      value[k + 4] = r.by_to * r.at_to.weight[k];
+      node[k + FieldWeights::kNodes] = r.at_to.node[k];
+      value[k + FieldWeights::kNodes] = r.by_to * r.at_to.weight[k];
     }
   }
 };
@@ -81,11 +82,12 @@ void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, Fie
   const Vector6d weighted = weight * by_x;
   pair.P.noalias() += weighted * by_x.transpose();
   pair.p += weighted * r.e;
-  for (std::size_t i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < NodeRow::kNodes; ++i) {
     pair.C.col(row.node[i]) += weighted * row.value[i];
     const double wi = weight * row.value[i];
     g[row.node[i]] += wi * r.e;
-    for (std::size_t j = 0; j < 8; ++j) sum.H(row.node[i], row.node[j]) += wi * row.value[j];
+    for (std::size_t j = 0; j < NodeRow::kNodes; ++j)
+      sum.H(row.node[i], row.node[j]) += wi * row.value[j];
   }
   ++sum.residuals;
 }

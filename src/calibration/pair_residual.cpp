@@ -17,7 +17,7 @@ FieldWeights weightsOf(const DepthField& field, double u, double v, const Pinhol
 Eigen::RowVector2d slopeOf(const DepthField& field, const FieldWeights& w,
                            const PinholeCamera& camera) {
   Eigen::RowVector2d slope(0, 0);
-  for (std::size_t k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
     const double node = field.nodes()[static_cast<std::size_t>(w.node[k])];
     slope += node * Eigen::RowVector2d(w.by_x[k] / camera.width, w.by_y[k] / camera.height);
   }

@@ -27,7 +27,7 @@ double overlapOf(const ViewSurface& from, const ViewSurface& to, const PairLimit
   if (patches.empty() || to.patches().empty()) return 0;
   const Eigen::Isometry3d T_to_from = to.T_map_camera().inverse() * from.T_map_camera();
   const std::size_t stride = std::max<std::size_t>(1, patches.size() / kSamples);
-  const DepthField none(2, 2);
+  const DepthField none(4, 4);
   std::size_t tried = 0, met = 0;
   for (std::size_t i = 0; i < patches.size(); i += stride) {
     ++tried;

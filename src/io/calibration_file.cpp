@@ -15,7 +15,7 @@
 namespace pf {
 namespace {
 
-constexpr char kModel[] = "inverse_depth_grid";
+constexpr char kModel[] = "inverse_depth_spline";
 constexpr int kMostNodes = 1000;        // in a direction: more than pixels that a cell needs
 constexpr double kLargest_per_m = 0.1;  // at 4 m the depth would be wrong by 40 %
 constexpr double kMost = 1e9;           // of counts
@@ -44,8 +44,8 @@ PinholeCamera readCamera(YamlMap map) {
 }
 
 DepthField readField(YamlMap& map) {
-  const int columns = requiredCount(map, "columns", 2, kMostNodes);
-  const int rows = requiredCount(map, "rows", 2, kMostNodes);
+  const int columns = requiredCount(map, "columns", 4, kMostNodes);
+  const int rows = requiredCount(map, "rows", 4, kMostNodes);
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<double> nodes = map.numbers("nodes_per_m", count);
   for (const double node : nodes) {

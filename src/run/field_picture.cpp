@@ -30,7 +30,9 @@ double errorOf(const DepthField& field, double x, double y) {
 
 double largest(const DepthField& field) {
   double most = 0;
-  for (const double node : field.nodes()) most = std::max(most, kAt_m * kAt_m * std::abs(node));
+  for (int i = 0; i < 64 * 48; ++i) {
+    most = std::max(most, std::abs(errorOf(field, (i % 64 + 0.5) / 64, (i / 64 + 0.5) / 48)));
+  }
   return most;
 }
 

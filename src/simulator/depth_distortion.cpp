@@ -34,18 +34,12 @@ DepthField trueField(const DepthConfig& config, const PinholeCamera& camera) {
   constexpr double kAt_m = 2.5;
   if (!config.noise) return {kColumns, kRows};
   const Distortion distortion(config, camera);
-  std::vector<double> nodes;
-  for (int row = 0; row < kRows; ++row) {
-    for (int col = 0; col < kColumns; ++col) {
-      const double u = static_cast<double>(col) / (kColumns - 1) * (camera.width - 1);
-      const double v = static_cast<double>(row) / (kRows - 1) * (camera.height - 1);
-      const double half =
-          0.5 * static_cast<double>(distortion.at(static_cast<int>(std::lround(u)),
-                                                  static_cast<int>(std::lround(v))));
-      nodes.push_back(half / (1.0 + kAt_m * half));
-    }
-  }
-  return {kColumns, kRows, nodes};
+  return fittedField(kColumns, kRows, [&](double x, double y) {
+    const auto col = static_cast<int>(std::lround(x * (camera.width - 1)));
+    const auto row = static_cast<int>(std::lround(y * (camera.height - 1)));
+    const double half = 0.5 * static_cast<double>(distortion.at(col, row));
+    return half / (1.0 + kAt_m * half);
+  });
 }
 
 }  // namespace pf::simulator

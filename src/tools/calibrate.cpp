@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_calibrate: the systematic error of a depth camera, from a map that it made.
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -33,8 +32,8 @@ void printEstimate(const FieldEstimate& e) {
   const double rms = e.field.rms();
   std::printf("field        RMS %.5f 1/m: %.1f mm at 1 m, %.1f at 2 m, %.1f at 4 m\n", rms,
               errorMm(rms, 1), errorMm(rms, 2), errorMm(rms, 4));
-  std::printf("left         %.5f 1/m unexplained; nodes known to %.5f 1/m\n", e.rest_per_m,
-              std::sqrt(e.covariance.diagonal().mean()));
+  std::printf("left         %.5f 1/m unexplained; field known to %.5f 1/m\n", e.rest_per_m,
+              e.sigma_per_m);
 }
 
 void printTruth(const DepthField& field, const DepthField& truth) {

@@ -2,22 +2,26 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace pf {
 
-/// Where a place in the image lies among the nodes of a grid: bilinear weights, and how they change
-/// with the place.
+/// How much each node of a grid counts at a place in the image, and how that changes with the
+/// place.
 struct FieldWeights {
-  std::array<int, 4> node{};  ///< indices, row by row
-  std::array<double, 4> weight{};
-  std::array<double, 4> by_x{}, by_y{};  ///< derivatives by x and y
+  static constexpr std::size_t kNodes = 16;
+  std::array<int, kNodes> node{};  ///< indices, row by row
+  std::array<double, kNodes> weight{};
+  std::array<double, kNodes> by_x{}, by_y{};  ///< derivatives by x and y
 };
 
 /// The smooth systematic error of a depth camera: 1/z_true = 1/z_measured + d(x, y), d in 1/m. To
-/// first order it is what a wrong disparity does. Bilinear between nodes that span the image.
-/// Places are x = (u + 0.5) / width, y = (v + 0.5) / height, so that one field holds for all sizes
-/// of the same image.
+/// first order it is what a wrong disparity does. A cubic B-spline: the nodes are its coefficients;
+/// those of the outermost rows and columns lie one step outside of the image. Places are
+/// x = (u + 0.5) / width, y = (v + 0.5) / height, so that one field holds for all sizes of the same
+/// image.
 class DepthField {
  public:
   static constexpr int kColumns = 12, kRows = 9;
@@ -27,7 +31,7 @@ class DepthField {
   DepthField(int columns, int rows)
       : DepthField(columns, rows, std::vector<double>(nodeCount(columns, rows), 0.0)) {}
 
-  /// `nodes_per_m`: row by row, 1/m. Throws std::invalid_argument for fewer than 2 columns or rows,
+  /// `nodes_per_m`: row by row, 1/m. Throws std::invalid_argument for fewer than 4 columns or rows,
   /// another number of nodes, or numbers that are not finite.
   DepthField(int columns, int rows, std::vector<double> nodes_per_m);
 
@@ -44,13 +48,14 @@ class DepthField {
   double corrected(double z_m, double x, double y) const;
 
   double mean() const;         ///< of the nodes, 1/m
-  double rms() const;          ///< of the nodes, 1/m
+  double rms() const;          ///< over the image, 1/m
   DepthField centred() const;  ///< less its mean: the gauge, as the mean cannot be observed
 
   /// The field that distorts as this one corrects.
   DepthField inverse() const;
 
-  /// This field, then another: what both together correct, on the nodes of this one.
+  /// This field, then another: what both together correct. Throws std::invalid_argument for another
+  /// grid.
   DepthField then(const DepthField& next) const;
 
  private:
@@ -59,6 +64,9 @@ class DepthField {
   int columns_, rows_;
   std::vector<double> nodes_;
 };
+
+/// The field nearest to a function of (x, y) in [0, 1].
+DepthField fittedField(int columns, int rows, const std::function<double(double, double)>& d);
 
 /// How alike two fields are over the image, on 64 x 48 places, their means aside.
 struct FieldComparison {

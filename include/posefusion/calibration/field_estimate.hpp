@@ -34,8 +34,9 @@ struct KeptOut {
 
 /// What was found.
 struct FieldEstimate {
-  DepthField field;                                 ///< mean zero
-  Eigen::MatrixXd covariance;                       ///< of the nodes, (1/m)^2
+  DepthField field;            ///< mean zero
+  Eigen::MatrixXd covariance;  ///< of the nodes, (1/m)^2
+  double sigma_per_m = 0;      ///< by that, of the field over the image (RMS, 1/m)
   std::size_t views = 0, pairs = 0, residuals = 0;  ///< learned from
   double rest_per_m = 0;                            ///< that the field leaves unexplained
   KeptOut kept_out;
