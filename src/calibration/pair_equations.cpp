@@ -11,7 +11,7 @@ namespace {
 
 using PoseFieldBlock = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-// Of a view that many patches are compared, spread over it: about eleven for a cell of the grid.
+// Of a view that many patches are compared, spread over it: about nineteen for a cell of the grid.
 constexpr std::size_t kPatches = 1000;
 
 template <typename Visit>

@@ -17,7 +17,7 @@ struct FieldEstimateConfig {
   int columns = DepthField::kColumns, rows = DepthField::kRows;
   double node_sigma_per_m = 0.005;    ///< what an uncalibrated camera has (1/m)
   double smooth_sigma_per_m = 0.001;  ///< by which neighbouring nodes differ (1/m)
-  int steps = 6;                      ///< Gauss-Newton
+  int steps = 8;                      ///< Gauss-Newton
   std::size_t keep_out_every = 5;     ///< one pair in so many judges, and is not learned from
   PairModel model;
   PairLimits pairs;

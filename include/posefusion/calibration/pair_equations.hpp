@@ -15,7 +15,7 @@ struct PairModel {
   /// as yet unknown field, finer structure than the grid, normals.
   double rest_per_m = 0.005;
   /// How many patches share that error, as they lie in one cell of the grid.
-  double patches_of_cell = 11;
+  double patches_of_cell = 19;
   /// Standard deviation of the pose of a pair: loops and tracking leave it (m, rad).
   double pose_sigma_m = 0.03, pose_sigma_rad = 0.015;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
