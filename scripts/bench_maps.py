@@ -1,27 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes of maps: against the true surface, killed while written, people who come and go, and
-the long walks with their ferns and loops."""
+"""What becomes of maps: against the true surface, people who come and go, and the long walks with
+their ferns and loops."""
 import math
-import random
-import shutil
-import subprocess
-import time
 
-from bench_report import Failed, call
-from bench_runs import PROGRAMS, Runs, note
+from bench_runs import Runs, poses
 
 MODES = ("pfh", "elastic", "posefusion")
 LONG_FRAMES_PER_SECOND = 15
-KILLS, KILL_SEED = 50, 1
-NO_MAP_YET = "its writer ended before the first write"
-JOURNAL, PARTIAL_MAP = "trajectory.partial.txt", "map.partial.pfdb"
 SAME_PLACE_M, SAME_PLACE_DEG = 0.10, 5.0
-
-
-def poses(path):
-    """{stamp: (x y z, quaternion)} of a trajectory file."""
-    rows = (line.split() for line in path.read_text().splitlines() if not line.startswith("#"))
-    return {r[0]: ([float(v) for v in r[1:4]], [float(v) for v in r[4:8]]) for r in rows if len(r) == 8}
 
 
 def is_far(one, other):
@@ -109,55 +95,6 @@ class Maps(Runs):
                  97 if barred else None, most=False, digits=2)
         self.row(f"{name}, with a pose in the end", 100 * known["share_posed_in_the_end"], "%",
                  digits=2)
-
-    def kills(self):
-        """kill -9 at random moments while a map is made: what of it is lost?"""
-        sequence = self.simulated("walking_xyz", 1, 5, "--start", "6")
-        chance = random.Random(KILL_SEED)
-        frames = sum(1 for line in (sequence / "depth.txt").read_text().splitlines() if line[0] != "#")
-        note(f"killing {KILLS} runs")
-        ends = [self.kill_one(sequence, chance.randint(1, frames - 10), chance.uniform(0, 0.2))
-                for _ in range(KILLS)]
-        lost, recorded = (sorted(times) for times in list(zip(*ends))[1:])
-        early = sum(1 for state, _, _ in ends if state == "empty")
-        whole = early + sum(1 for state, _, _ in ends if state == "whole")
-        self.row(f"killed while mapping: files that load ({early}: before the first write, and say so)", whole,
-                 f"of {KILLS}", KILLS, most=False, digits=0)
-        self.row("killed while mapping: work told and lost, median", lost[KILLS // 2], "s", digits=2)
-        self.row("killed while mapping: work told and lost, worst", lost[-1], "s", 1, digits=2)
-        self.row("killed while mapping: of the recording, worst", recorded[-1], "s", digits=2)
-
-    def kill_one(self, sequence, poses_before, wait_s):
-        """What the map file is of a run killed so long after so many poses (whole, empty, broken), and
-        how much is lost (s): from when it told the last pose that is in the file to when it told the
-        last of all; and the same by the stamps of the two."""
-        folder = self.output / "killed"
-        shutil.rmtree(folder, ignore_errors=True)
-        run = subprocess.Popen([str(PROGRAMS / "posefusion_run"), str(sequence), "--output", str(folder),
-                                "--detector", "recorded"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        told, stop = {}, None  # when each pose was told first; when to kill
-        while run.poll() is None and (stop is None or time.monotonic() < stop):
-            journal = folder / JOURNAL
-            for stamp in poses(journal) if journal.exists() else ():
-                told.setdefault(stamp, time.monotonic())
-            if stop is None and len(told) >= poses_before:
-                stop = time.monotonic() + wait_s
-            time.sleep(0.005)
-        if run.poll() is not None:
-            raise Failed(f"posefusion_run ended before it was killed (code {run.returncode})")
-        run.kill()
-        run.wait()
-        told_last = list(poses(folder / JOURNAL))[-1]
-        end = told.get(told_last, time.monotonic())
-        try:
-            call(PROGRAMS / "posefusion_map", "check", folder / PARTIAL_MAP)
-            info = call(PROGRAMS / "posefusion_map", "info", folder / PARTIAL_MAP)
-        except Failed as error:
-            print(f"  {error}")
-            return ("empty" if NO_MAP_YET in str(error) else "broken", end - min(told.values()),
-                    float(told_last) - float(min(told)))
-        last = next(line.split()[-1] for line in info.splitlines() if line.startswith("time "))
-        return "whole", max(0.0, end - told[last]), max(0.0, float(told_last) - float(last))
 
     def visitors(self):
         """A map made with people in view is found again without them, and the reverse."""

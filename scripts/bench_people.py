@@ -5,7 +5,7 @@ import shutil
 import statistics
 
 from bench_report import call
-from bench_runs import PROGRAMS, note
+from bench_runs import PROGRAMS, newest, note
 from bench_recordings import Recordings
 
 # Simulated people whom the model was not trained with: rooms of its training are made otherwise.
@@ -103,7 +103,7 @@ class People(Recordings):
             shutil.rmtree(folder, ignore_errors=True)
             call(self.options.baseline / "posefusion_run", data, "--output", folder,
                  *self.network_arguments())
-            before = json.loads((folder / "summary.json").read_text())
+            before = json.loads((newest(folder) / "summary.json").read_text())
             ratios.append(network["stages"]["pose"]["median_ms"] / before["stages"]["pose"]["median_ms"])
         self.row("kitchen_people, whole chain, embedded against network", statistics.median(gains), "x",
                  0.85, most=False, digits=2)

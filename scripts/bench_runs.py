@@ -33,6 +33,18 @@ def fingerprint(scenario, arguments):
     return digest.hexdigest()
 
 
+def newest(folder):
+    """Where the results of a run lie; older builds wrote into the folder itself."""
+    latest = folder / "latest"
+    return latest if latest.is_dir() else folder
+
+
+def poses(path):
+    """{stamp: (x y z, quaternion)} of a trajectory file."""
+    rows = (line.split() for line in path.read_text().splitlines() if not line.startswith("#"))
+    return {r[0]: ([float(v) for v in r[1:4]], [float(v) for v in r[4:8]]) for r in rows if len(r) == 8}
+
+
 def plain(argument):
     """What of an argument may be part of a folder's name."""
     return "".join(c for c in argument if c.isalnum() or c == "_")
@@ -53,7 +65,7 @@ class Runs(Report):
             folder = self.output / name
             shutil.rmtree(folder, ignore_errors=True)
             call(PROGRAMS / "posefusion_run", source, "--output", folder, *arguments)
-            self.runs[name] = folder, json.loads((folder / "summary.json").read_text())
+            self.runs[name] = newest(folder), json.loads((newest(folder) / "summary.json").read_text())
         return self.runs[name]
 
     def network_arguments(self):
@@ -94,7 +106,7 @@ class Runs(Report):
         sequence = self.simulated(scenario, seed, duration)
         detector = self.network_arguments() if people == "network" else ("--detector", people)
         name = f"{sequence.name}_{people}_run" if loops else f"{sequence.name}_{people}_open_run"
-        status = self.output / name / "status.csv"
+        status = self.output / name / "status.csv"  # beside the folder of the run
         settings = () if loops else ("--set", "loop.enabled=false")
         return sequence, *self.run(name, sequence, *detector, *settings, "--save-status", status)
 

@@ -8,7 +8,7 @@ import shutil
 import statistics
 
 from bench_report import call
-from bench_runs import PROGRAMS, ROOT, Runs, note
+from bench_runs import PROGRAMS, ROOT, Runs, newest, note
 
 # Builds are compared at the same work: older ones show the network every 5th frame where nothing
 # else is said.
@@ -58,7 +58,7 @@ class Speed(Runs):
         shutil.rmtree(folder, ignore_errors=True)
         call(self.options.baseline / "posefusion_run", data, "--output", folder,
              *self.network_arguments(), *LOOKS_AS_BEFORE)
-        return json.loads((folder / "summary.json").read_text())["frames_per_second"]
+        return json.loads((newest(folder) / "summary.json").read_text())["frames_per_second"]
 
     def big_map(self):
         """The same views among few and among many surfels: copies of the map they give, out of view."""

@@ -15,7 +15,7 @@ WALKING_SECONDS = 30
 
 def states(folder):
     """The rows of the table that a run keeps of its frames."""
-    with open(folder / "status.csv", newline="") as file:
+    with open(folder.parent / "status.csv", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -91,7 +91,7 @@ class Walks(Falls, Maps):
                  "%", digits=1)
         self.row(f"{name}, lost frames found of those searched", summary["loops"]["places_found"],
                  f"of {summary['loops']['places_searched']}", digits=0)
-        self.fall_rows(name, self.fall_check(sequence, folder / "status.csv", "--map",
+        self.fall_rows(name, self.fall_check(sequence, folder.parent / "status.csv", "--map",
                                              folder / "map.pfdb"))
 
     def come_back(self):
@@ -131,6 +131,6 @@ class Walks(Falls, Maps):
         runs += [("loop_room", seed, "recorded", None) for seed in self.options.seeds]
         for scenario, seed, people, seconds in runs:
             sequence, folder, _ = self.walk_run(scenario, seed, people, seconds, loops=False)
-            share = self.evaluate("covariance", sequence, folder / "status.csv")
+            share = self.evaluate("covariance", sequence, folder.parent / "status.csv")
             name = f"{scenario} {seed}, motion's true error within 3 sigma"
             self.row(name, 100 * share["within_3_sigma"], "%", 90, most=False, digits=1)

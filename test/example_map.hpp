@@ -27,7 +27,7 @@ struct ExampleMap {
       s.weight[i] = s.confidence[i] = 20;
       s.created[i] = s.seen[i] = static_cast<std::int32_t>(i / 400);
     }
-    map.restore(s, 9);
+    map.restore({{kFirstFragment, s}}, 9);
     addContent();
     update.block_count = static_cast<std::uint32_t>(map.blocks().size());
     update.blocks = changedBlocks(map, -1);

@@ -20,7 +20,7 @@ FusedFrame fusedAt(int number, const Eigen::Isometry3d& T) {
   FusedFrame frame;
   frame.stamp_ns = number;
   frame.map_frame = number;
-  frame.T_map_camera = T;
+  frame.pose.T_map_camera = T;
   frame.covariance = 1e-6 * Matrix6d::Identity();
   return frame;
 }
@@ -44,6 +44,35 @@ TEST(BackEnd, AReturnIsTiedToTheNearestKeyframe) {
   const PoseConstraint& tie = back_end.graph().constraints().back();
   EXPECT_EQ(tie.from, 2);
   EXPECT_EQ(tie.to, 6);
+}
+
+TEST(BackEnd, AReturnIntoAnOlderFragmentIsTiedToThat) {
+  BackEnd back_end{GraphConfig{}};
+  const auto fusedIn = [](int fragment, int number, double x_m) {
+    FusedFrame frame = fusedAt(number, along(x_m));
+    frame.pose.fragment = fragment;
+    return frame;
+  };
+  for (int i = 0; i < 3; ++i) back_end.add(fusedIn(0, i, 0.5 * i));
+  for (int i = 3; i < 6; ++i) back_end.add(fusedIn(1, i, 0.5 * (i - 3)));
+  EXPECT_EQ(back_end.graph().constraints().size(), 4U) << "the first of a fragment is tied to none";
+  EXPECT_EQ(back_end.nearest({0, along(0.9)}), 2);
+  EXPECT_EQ(back_end.nearest({1, along(0.9)}), 5);
+  EXPECT_EQ(back_end.nearest({2, along(0.9)}), -1);
+  FusedFrame found = fusedIn(0, 9, 0.45);
+  found.is_return = true;
+  EXPECT_EQ(back_end.add(found), 6);
+  EXPECT_EQ(back_end.graph().constraints().back().from, 1);
+  found = fusedIn(1, 12, 0.05);
+  found.is_return = true;
+  EXPECT_EQ(back_end.add(found), 7);
+  EXPECT_EQ(back_end.graph().constraints().back().from, 3);
+  back_end.record(100, {0, along(0.4)});
+  back_end.record(101, {1, along(0.1)});
+  EXPECT_EQ(back_end.frames()[0].pose.keyframe, 6) << "by a keyframe of its fragment";
+  EXPECT_EQ(back_end.frames()[1].pose.keyframe, 7);
+  ASSERT_EQ(back_end.trajectory().size(), 1U);
+  EXPECT_NEAR(back_end.trajectory()[0].T_world_camera.translation().x(), 0.4, 1e-12);
 }
 
 /// A round with a drift of 0.24 m: the camera is lost as it comes home, found at the first
@@ -71,11 +100,13 @@ TEST(BackEnd, AReturnClosesALoopByTheWayThroughTheLoss) {
   const FusedFrame home = homeAfterARound(back_end);
   const auto before = back_end.keyframePoses();
   const int id = back_end.add(home);
-  EXPECT_EQ(back_end.keyframePoses()[19].matrix(), before[19].matrix()) << "it waits";
+  EXPECT_EQ(back_end.keyframePoses()[19].T_map_camera.matrix(), before[19].T_map_camera.matrix())
+      << "it waits";
   ASSERT_EQ(back_end.close({}).size(), 1U);
-  const Eigen::Isometry3d came = before[19].inverse() * home.carried.T_map_camera;
+  const Eigen::Isometry3d came = before[19].T_map_camera.inverse() * home.carried.T_map_camera;
   const auto after = back_end.keyframePoses();
-  const Eigen::Isometry3d off = (after[19] * came).inverse() * after[static_cast<std::size_t>(id)];
+  const Eigen::Isometry3d off =
+      (after[19].T_map_camera * came).inverse() * after[static_cast<std::size_t>(id)].T_map_camera;
   EXPECT_LT(off.translation().norm(), 0.05) << "0.24 m before";
 }
 
@@ -90,7 +121,7 @@ TEST(BackEnd, AWayThatIsNotMeasuredOrLeadsElsewhereClosesNothing) {
     EXPECT_TRUE(back_end.close({}).empty());
     const auto after = back_end.keyframePoses();
     for (std::size_t i = 0; i < before.size(); ++i) {
-      EXPECT_EQ(after[i].matrix(), before[i].matrix());
+      EXPECT_EQ(after[i].T_map_camera.matrix(), before[i].T_map_camera.matrix());
     }
     EXPECT_EQ(back_end.counts().refused, measured ? 1U : 0U);
   }
@@ -102,8 +133,8 @@ TEST(BackEnd, PosesFollowTheirKeyframes) {
   BackEnd back_end{GraphConfig{}};
   for (int i = 0; i < 10; ++i) {
     back_end.add(fusedAt(2 * i, along(0.52 * i)));
-    back_end.record(2 * i, along(0.52 * i));
-    back_end.record(2 * i + 1, along(0.52 * i + 0.1));
+    back_end.record(2 * i, {0, along(0.52 * i)});
+    back_end.record(2 * i + 1, {0, along(0.52 * i + 0.1)});
   }
   EXPECT_NEAR(back_end.trajectory().back().T_world_camera.translation().x(), 4.78, 1e-9);
   LoopConstraint loop;
@@ -125,7 +156,7 @@ TEST(BackEnd, PosesFollowTheirKeyframes) {
 
 TEST(BackEnd, KeepsNothingBeforeTheFirstKeyframe) {
   BackEnd back_end{GraphConfig{}};
-  back_end.record(1, along(0));
+  back_end.record(1, {0, along(0)});
   EXPECT_TRUE(back_end.trajectory().empty());
   EXPECT_TRUE(back_end.close({}).empty());
 }

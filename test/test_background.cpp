@@ -31,6 +31,19 @@ TEST(MotionPredictor, StartsFromTheViewsOwnStamp) {
   }
 }
 
+TEST(MotionPredictor, NoMotionLeadsFromOneFragmentToAnother) {
+  MotionPredictor predictor;
+  ModelView view;
+  for (const int fragment : {0, 1, 1}) {
+    view.fragment = fragment;
+    view.stamp_ns += 33;
+    view.T_map_camera.translation().x() += 0.1;
+    const double step = predictor.predict(view, view.stamp_ns + 33).translation().x();
+    const bool is_known = view.stamp_ns == 99;
+    EXPECT_NEAR(step, is_known ? 0.1 : 0.0, 1e-12) << view.stamp_ns;
+  }
+}
+
 TEST(MotionPredictor, KeepsThePoseWhereNoMotionIsKnown) {
   MotionPredictor predictor;
   ModelView view;

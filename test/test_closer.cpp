@@ -30,7 +30,7 @@ Eigen::Isometry3d poseOf(int view) { return room().pose(view * kStep); }
 
 KeyframePicture pictureOf(int view) {
   KeyframePicture picture;
-  picture.assign(keyframeView(frameOf(view), view, poseOf(view), true));
+  picture.assign(keyframeView(frameOf(view), view, {0, poseOf(view)}, true));
   return picture;
 }
 
@@ -43,9 +43,9 @@ LoopConfig quick() {
 /// All views and then the first again; `off` is the error of the later poses.
 std::vector<LoopConstraint> comeBack(LoopCloser& closer, const Eigen::Isometry3d& off) {
   for (int i = 0; i < kViews; ++i) {
-    closer.addKeyframe(keyframeView(frameOf(i), i, poseOf(i), true));
+    closer.addKeyframe(keyframeView(frameOf(i), i, {0, poseOf(i)}, true));
   }
-  closer.addKeyframe(keyframeView(frameOf(0), kViews, poseOf(0) * off, true));
+  closer.addKeyframe(keyframeView(frameOf(0), kViews, {0, poseOf(0) * off}, true));
   return closer.findLoops();
 }
 
@@ -112,16 +112,36 @@ TEST(LoopCloser, ComparesNoMoreThanIsEnough) {
   EXPECT_EQ(closer.counts().compared, 1U);
 }
 
+TEST(LoopCloser, PosesInOtherFragmentsAreNotNear) {
+  // The coordinates say the same place; only the pictures may tell that it is.
+  for (const int fragment : {0, 1}) {
+    LoopCloser closer(quick(), TrackingConfig{});
+    for (int i = 0; i < kViews; ++i) {
+      closer.addKeyframe(keyframeView(frameOf(i), i, {0, poseOf(i)}, true));
+    }
+    closer.addKeyframe(keyframeView(frameOf(0), kViews, {fragment, poseOf(0)}, true));
+    closer.findLoops();
+    EXPECT_EQ(closer.counts().local > 0, fragment == 0);
+    std::vector<MapPose> poses = closer.poses();
+    EXPECT_EQ(poses.back().fragment, fragment);
+    poses.back().fragment = 0;  // joined
+    closer.setPoses(poses);
+    EXPECT_EQ(closer.poses().back().fragment, 0);
+    closer.findLoops();
+    EXPECT_GT(closer.counts().local, 0U);
+  }
+}
+
 TEST(LoopCloser, PicturesThatLookDifferentWaysAreNotJoined) {
   // One picture, and the same as a camera would see it that is turned about its axis: aligned
   // without an error, but every surface is at another place of the picture.
   const double turn_rad = 0.35;
   const WorkingFrame frame = frameOf(0);
   LoopCloser closer(quick(), TrackingConfig{});
-  for (int i = 0; i < 3; ++i) closer.addKeyframe(keyframeView(frame, i, poseOf(0), true));
+  for (int i = 0; i < 3; ++i) closer.addKeyframe(keyframeView(frame, i, {0, poseOf(0)}, true));
   Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
   turned.rotate(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
-  KeyframeView view = keyframeView(frame, 3, poseOf(0) * turned, true);
+  KeyframeView view = keyframeView(frame, 3, {0, poseOf(0) * turned}, true);
   const auto rotated = [&](cv::Mat image, int interpolation) {
     const cv::Point2f centre(static_cast<float>(view.camera.cx),
                              static_cast<float>(view.camera.cy));
@@ -149,18 +169,18 @@ TEST(LoopCloser, FernsAreStoredByTheStaticViewRule) {
     LoopConfig config = quick();
     config.static_view_rule = rule;
     LoopCloser closer(config, TrackingConfig{});
-    closer.addKeyframe(keyframeView(frameOf(0), 0, poseOf(0), false));
+    closer.addKeyframe(keyframeView(frameOf(0), 0, {0, poseOf(0)}, false));
     EXPECT_EQ(closer.counts().ferns, rule ? 0U : 1U);
     EXPECT_EQ(closer.counts().not_static, rule ? 1U : 0U);
-    closer.addKeyframe(keyframeView(frameOf(0), 1, poseOf(0), true));
+    closer.addKeyframe(keyframeView(frameOf(0), 1, {0, poseOf(0)}, true));
     EXPECT_EQ(closer.counts().ferns, 1U);
   }
 }
 
 TEST(LoopCloser, RefusesWhatDoesNotFollow) {
   LoopCloser closer(quick(), TrackingConfig{});
-  closer.addKeyframe(keyframeView(frameOf(0), 3, poseOf(0), true));
-  EXPECT_THROW(closer.addKeyframe(keyframeView(frameOf(0), 3, poseOf(0), true)), InputError);
+  closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true));
+  EXPECT_THROW(closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true)), InputError);
   EXPECT_THROW(closer.setPoses({}), InputError);
 }
 

@@ -108,6 +108,44 @@ TEST(Deform, WhatWasMadeWhereNothingMovesKeepsItsBitsAndItsBlock) {
   }
 }
 
+TEST(Deform, OneFragmentJoinsAnotherAndThatStays) {
+  // The same surfels in fragments 0, 1 and 2; 2 becomes part of 1. Frames belong to all of them.
+  for (const Eigen::Isometry3d& T : {Eigen::Isometry3d::Identity(), motion(0.9, -0.2, 0.1, 0.4)}) {
+    SurfelMap map = mapOf(wall());
+    map.add(wall(), 1);
+    map.add(wall(), 2);
+    const SurfelMap before = map;
+    const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+    deform(map, Deformation(1, {{0, still, true, 0}, {0, still, true, 1}, {50, T, false, 2}},
+                            Deformation::Join{2, 1}));
+    EXPECT_EQ(map.size(), before.size());
+    std::size_t joined = 0;
+    map.forEachSurfelOf(2, [](const SurfelArrays&, std::size_t) { FAIL(); });
+    map.forEachSurfelOf(1, [&](const SurfelArrays&, std::size_t) { ++joined; });
+    EXPECT_EQ(joined, 2 * wall().size());
+    for (std::size_t k = 0; k < before.blocks().size(); ++k) {
+      const SurfelBlock &old = before.blocks()[k], &now = map.blocks()[k];
+      if (old.fragment == 0) {
+        EXPECT_EQ(old.surfels.x, now.surfels.x);
+      }
+      if (old.fragment != 1) continue;
+      ASSERT_GE(now.surfels.size(), old.surfels.size());
+      for (std::size_t i = 0; i < old.surfels.size(); ++i) {
+        EXPECT_EQ(old.surfels.x[i], now.surfels.x[i]);
+      }
+    }
+    double sum = 0;  // of the x of what came
+    map.forEachSurfelOf(1, [&](const SurfelArrays& s, std::size_t i) { sum += s.x[i]; });
+    double expected = 0;
+    const SurfelArrays all = wall();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      expected += all.x[i] + (T * Eigen::Vector3d(all.x[i], all.y[i], all.z[i])).x();
+    }
+    EXPECT_NEAR(sum, expected, 0.05);
+    expectSound(map);
+  }
+}
+
 TEST(Deform, EachSurfelGoesWithTheFrameThatMadeIt) {
   const SurfelArrays before = wall();
   SurfelMap map = mapOf(before);

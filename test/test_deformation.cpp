@@ -82,5 +82,26 @@ TEST(Deformation, SortsItsNodes) {
   EXPECT_TRUE(same(d.at(35), motion(1, 0), 0));
 }
 
+TEST(Deformation, OfOneFragmentLeavesTheOthers) {
+  // Fragment 1 was mapped in between, and the camera came back to fragment 0.
+  const Deformation d(
+      1,
+      {{0, motion(0.1, 0), true, 0}, {10, motion(5, 1), false, 1}, {20, motion(0.3, 0), false, 0}},
+      Deformation::Join{1, 0});
+  EXPECT_TRUE(same(d.at(5, 0), motion(0.15, 0), 1e-9));
+  EXPECT_TRUE(same(d.at(15, 0), motion(0.25, 0), 1e-9)) << "not by the other's keyframe";
+  EXPECT_TRUE(same(d.at(5, 1), motion(5, 1), 0));
+  EXPECT_TRUE(same(d.at(15, 1), motion(5, 1), 0));
+  EXPECT_TRUE(same(d.at(15, 2), Eigen::Isometry3d::Identity(), 0));
+  EXPECT_EQ(d.fragmentAfter(0), 0);
+  EXPECT_EQ(d.fragmentAfter(1), 0);
+  EXPECT_EQ(d.fragmentAfter(2), 2);
+}
+
+TEST(Deformation, ThatJoinsFragmentsIsNoIdentityEvenIfNothingMoves) {
+  const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+  EXPECT_FALSE(Deformation(1, {{0, still, true, 1}}, Deformation::Join{1, 0}).isIdentity());
+}
+
 }  // namespace
 }  // namespace pf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/graph/fragments.hpp"
+#include "posefusion/core/map_pose.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,8 +66,8 @@ struct Carried {
   std::size_t stableAtHome() const {
     const SurfelMap& map = mapper_.map();
     std::size_t count = 0;
-    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-      count += map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
+    map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
+      count += map.isStable(s, i) ? 1 : 0;
     });
     return count;
   }
@@ -75,17 +75,29 @@ struct Carried {
   std::size_t surfels_ = 0;  ///< stable ones, before the loss
 };
 
-TEST(Fragments, ALostCameraMapsOnFarFromAllElse) {
+TEST(Fragments, ALostCameraMapsOnInCoordinatesOfItsOwn) {
   Carried run(Carried::config(), false);
   for (int i = kMapped - 1; i > kMapped / 2; --i) {
     const FrameStatus& status = run.see(i);
     ASSERT_EQ(status.state, TrackingState::tracking) << "frame " << i;
     EXPECT_EQ(status.fragment, 1);
     EXPECT_FALSE(status.located) << "where it is, nobody knows";
+    EXPECT_LT(status.T_map_camera.translation().norm(), 3) << "near the origin of the fragment";
   }
   EXPECT_EQ(run.stableAtHome(), run.surfels_) << "the map is as it was";
   EXPECT_GT(run.mapper_.map().stableCount(), run.surfels_ + 1000);
   EXPECT_EQ(run.mapper_.backEnd().trajectory().size(), std::size_t{kMapped / 2});
+}
+
+TEST(Fragments, OneBeginsAtAnOriginOfItsOwn) {
+  const Carried run(Carried::config(), false);
+  const Keyframe& last = run.mapper_.backEnd().graph().keyframes().back();
+  EXPECT_EQ(last.fragment, 1);
+  EXPECT_EQ(last.T_map_camera.translation().norm(), 0);
+  for (const SurfelBlock& block : run.mapper_.map().blocks()) {
+    EXPECT_LE(block.fragment, 1);
+    EXPECT_LT(block.bounds.center().norm(), 8.0F) << "coordinates overlap, blocks are apart";
+  }
 }
 
 TEST(Fragments, NoneIsBegunWhereThatIsOff) {
@@ -123,6 +135,45 @@ TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
   EXPECT_EQ(run.mapper_.backEnd().counts().joined, 1U);
   EXPECT_EQ(run.status_.fragment, 0) << "it lies in the map of before";
   EXPECT_LT(run.errorM(39), 0.02);
+}
+
+/// Covers the camera, uncovers it at a frame, and tells where that is; it is believed.
+void findAt(Carried& run, int index, const MapPose& pose) {
+  for (int i = 0; i < kCovered; ++i) run.see(index, 0);
+  run.mapper_.introduceCloser();  // so that it asks
+  run.see(index);
+  ASSERT_EQ(run.status_.state, TrackingState::lost);
+  LoopAnswer answer;
+  answer.asked_for_place = true;
+  answer.place.emplace();
+  answer.place->doubt = PlaceDoubt::none;
+  answer.place->fragment = pose.fragment;
+  answer.place->alignment.T_map_camera = pose.T_map_camera;
+  run.mapper_.take(answer);
+  for (int i = 0; i < 5; ++i) run.see(index);
+  ASSERT_EQ(run.status_.state, TrackingState::tracking) << run.status_.detail;
+  EXPECT_EQ(run.status_.fragment, pose.fragment);
+  const auto& keyframes = run.mapper_.backEnd().graph().keyframes();
+  EXPECT_EQ(keyframes.back().fragment, pose.fragment);
+  const PoseConstraint& tie = run.mapper_.backEnd().graph().constraints().back();
+  EXPECT_EQ(tie.to, keyframes.back().id) << "what comes back is tied";
+  EXPECT_EQ(keyframes[static_cast<std::size_t>(tie.from)].fragment, pose.fragment);
+}
+
+TEST(Fragments, ACameraThatIsLostInOneIsFoundInAnother) {
+  Carried run(Carried::config(), false);
+  run.see(kMapped - 1);
+  const MapPose away{1, run.status_.T_map_camera};
+  ASSERT_EQ(run.status_.fragment, away.fragment);
+  const std::size_t told = run.mapper_.backEnd().trajectory().size();
+  findAt(run, 10, {kFirstFragment, room().pose(10)});
+  EXPECT_TRUE(run.status_.located);
+  EXPECT_LT(run.errorM(10), 0.02);
+  EXPECT_GT(run.mapper_.backEnd().trajectory().size(), told);
+  findAt(run, kMapped - 1, away);
+  EXPECT_FALSE(run.status_.located);
+  const Eigen::Isometry3d off = away.T_map_camera.inverse() * run.status_.T_map_camera;
+  EXPECT_LT(off.translation().norm(), 0.02);
 }
 
 TEST(Fragments, AreJoinedWhenTheirPlaceIsFound) {

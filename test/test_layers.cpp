@@ -28,7 +28,7 @@ void addWall(SurfelArrays& s, float z, int created, bool away = false, float con
 /// The frames in which the surfels were made that stay.
 std::multiset<int> left(const SurfelArrays& surfels) {
   SurfelMap map{MapConfig{}};
-  map.restore(surfels, 1000);
+  map.restore({{kFirstFragment, surfels}}, 1000);
   const std::size_t removed = removeYoungerLayers(map);
   EXPECT_EQ(removed, surfels.size() - map.size());
   const SurfelArrays all = map.collect();
@@ -44,6 +44,17 @@ TEST(Layers, TheYoungerGoes) {
     EXPECT_EQ(made.size(), static_cast<std::size_t>(kSide * kSide)) << apart;
     EXPECT_EQ(made.count(500), 0U) << apart;
   }
+}
+
+TEST(Layers, OtherFragmentsHaveNoneInCommon) {
+  SurfelArrays younger, older;
+  addWall(younger, 2.03F, 500);
+  addWall(older, 2.0F, 10);
+  SurfelMap map{MapConfig{}};
+  map.restore({{0, older}, {1, younger}}, 1000);
+  EXPECT_EQ(removeYoungerLayers(map), 0U) << "how they lie to each other is not known";
+  map.restore({{1, older}, {0, younger}, {1, younger}}, 1000);
+  EXPECT_EQ(removeYoungerLayers(map), younger.size());
 }
 
 TEST(Layers, WhatReachesBeyondTheOlderStays) {

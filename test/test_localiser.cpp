@@ -121,7 +121,7 @@ class LocaliserStepTest : public MapperTest {
     Fuser fuser;
     for (int i = 0; i <= kFirst; ++i) fuser.fuse(frameAt(i), room().frame(i).T_map_camera, map_);
     localiser_.begin(frameAt(kFirst), room().frame(kFirst).frame.stamp_ns,
-                     room().frame(kFirst).T_map_camera);
+                     {kFirstFragment, room().frame(kFirst).T_map_camera});
   }
   const WorkingFrame& frameAt(int i) {
     frame_.assign(room().frame(i).frame, cv::Mat(), config().frame);
@@ -192,7 +192,7 @@ class LocaliserLossTest : public MapperTest {
   Location see(int i, const SparseFlow& flow) {
     const TrueFrame truth = room().frame(i);
     frame_.assign(truth.frame, cv::Mat(), config().frame);
-    if (i == 0) return localiser_.begin(frame_, truth.frame.stamp_ns, truth.T_map_camera);
+    if (i == 0) return localiser_.begin(frame_, truth.frame.stamp_ns, {0, truth.T_map_camera});
     return localiser_.locate(
         frame_, truth.frame.stamp_ns, flow, false, nothing_,
         {[&](const Eigen::Isometry3d& T) {
@@ -237,7 +237,7 @@ class LocaliserGapTest : public ::testing::Test {
     frame.depth(gap).setTo(2.0F);
     frame_.assign(frame, cv::Mat(), fullResolution());
     fuseOften(20, frame_, map_);
-    Location location = localiser_.begin(frame_, 0, kIdentity);
+    Location location = localiser_.begin(frame_, 0, {kFirstFragment, kIdentity});
     for (int i = 1; i <= frames && location.outcome == FrameOutcome::fused; ++i) {
       location = see(i, gap);
     }

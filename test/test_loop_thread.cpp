@@ -187,8 +187,8 @@ TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
   ASSERT_EQ(closer->questions.size(), 1U);
   ASSERT_NE(closer->questions[0].place, nullptr);
   ASSERT_EQ(closer->questions[0].corrected.size(), mapper->backEnd().keyframePoses().size());
-  EXPECT_EQ(closer->questions[0].corrected.back().matrix(),
-            mapper->backEnd().keyframePoses().back().matrix());
+  EXPECT_EQ(closer->questions[0].corrected.back().T_map_camera.matrix(),
+            mapper->backEnd().keyframePoses().back().T_map_camera.matrix());
 }
 
 TEST_F(LoopExchanges, ALostCameraAsksAgainWhenAQuestionWasGivenUp) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Map files that are no maps, are damaged, or whose writer had an accident.
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "example_map.hpp"
+#include "first_map_version.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_database.hpp"
@@ -21,21 +21,12 @@
 namespace pf {
 namespace {
 
-/// Runs SQL on a file as another program would.
-void change(const std::string& path, const std::string& sql) {
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
-  char* error = nullptr;
-  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &error), SQLITE_OK) << error;
-  sqlite3_close(database);
-}
-
 /// What is said of a map after such a change. Written once: waiting for the disk takes long.
 std::string errorAfter(const std::string& sql) {
   const TemporaryFolder folder;
   static const std::string whole = readFile(saved(folder, ExampleMap().update));
   const std::string path = folder.write("changed.pfdb", whole);
-  change(path, "PRAGMA synchronous=OFF; " + sql);
+  runSql(path, "PRAGMA synchronous=OFF; " + sql);
   const std::string error = errorOf([&] { readAll(path); });
   EXPECT_NE(error.find(path + ": "), std::string::npos) << sql << ": " << error;
   return error;
@@ -53,7 +44,7 @@ TEST(MapDatabase, RefusesWhatIsNoMap) {
   EXPECT_EQ(errorOf([&] { readAll(folder.str()); }),
             folder.str() + ": is a folder, expected a map file");
   EXPECT_NE(errorOf([&] { readAll(folder / "none"); }).find("cannot be opened"), std::string::npos);
-  change(folder / "other", "CREATE TABLE state(id INTEGER PRIMARY KEY)");
+  runSql(folder / "other", "CREATE TABLE state(id INTEGER PRIMARY KEY)");
   EXPECT_EQ(errorOf([&] { readAll(folder / "other"); }),
             folder / "other" + ": is no map of posefusion");
 }
@@ -62,7 +53,12 @@ TEST(MapDatabase, RefusesWhatAMapCannotHold) {
   const auto said = [](const std::string& error, const std::string& text) {
     return error.find(text) != std::string::npos;
   };
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=2"), "a newer posefusion made it"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=3"), "a newer posefusion made it"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=1"), "other tables")) << "those of version 2";
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=0"), "a map of version 0, expected 1 to 2"));
+  EXPECT_TRUE(
+      said(errorAfter("UPDATE blocks SET fragment=-1 WHERE id=2"), "block 2 is of fragment"));
+  EXPECT_TRUE(said(errorAfter("UPDATE keyframes SET fragment=7 WHERE id=1"), "fragment is 7"));
   EXPECT_TRUE(said(errorAfter("CREATE TABLE more(x)"), "other tables"));
   EXPECT_TRUE(said(errorAfter("DROP TABLE blobs"), "other tables"));
   EXPECT_TRUE(
@@ -97,6 +93,42 @@ TEST(MapDatabase, RefusesSurfelsThatCannotBe) {
   s.nx[3] = 0;
   s.created[0] = 10;
   EXPECT_NE(error("b").find("a surfel is of frame 10"), std::string::npos);
+  s.created[0] = 0;
+  s.seen[0] = std::numeric_limits<std::int32_t>::min();
+  EXPECT_NE(error("c").find("seen in -2147483648"), std::string::npos);
+  s.seen[0] = 0;
+  for (const float radius : {1e30F, 0.0F, -0.1F}) {
+    s.radius[1] = radius;
+    EXPECT_NE(error("d" + std::to_string(radius)).find("the radius of a surfel is"),
+              std::string::npos)
+        << radius;
+  }
+  s.radius[1] = 0.02F;
+  s.nz[2] = 4;
+  EXPECT_NE(error("e").find("the normal's length of a surfel is 4"), std::string::npos);
+  s.nz[2] = -1;
+  s.x[5] = 3e8F;
+  EXPECT_NE(error("f").find("the place of a surfel"), std::string::npos);
+  s.x[5] = 0;
+  for (const std::int32_t violations : {std::numeric_limits<std::int32_t>::min(), 2'000'000'000}) {
+    s.violations[4] = violations;
+    EXPECT_NE(error("g" + std::to_string(violations)).find("the violations of a surfel"),
+              std::string::npos);
+  }
+  s.violations[4] = 0;
+  EXPECT_EQ(error("whole"), "");
+}
+
+TEST(MapDatabase, ALargePictureIsRefusedBeforeItIsUnpacked) {
+  // 30,000 x 30,000 pixels in some kilobytes would be unpacked to 900 MB.
+  const TemporaryFolder folder;
+  ExampleMap example;
+  example.update.images[1].grey = cv::Mat::zeros(30, 33, CV_8UC1);
+  const std::string path = saved(folder, example.update);
+  EXPECT_NE(errorOf([&] {
+              readAll(path);
+            }).find("an image of keyframe 1 is damaged, or larger than the camera's"),
+            std::string::npos);
 }
 
 TEST(MapDatabase, ADamagedFileIsRefusedOrReadButNeverCrashes) {
@@ -186,7 +218,8 @@ TEST(MapDatabase, AKilledWriterLeavesAWholeMap) {
       const MapContent content = reader.content();
       EXPECT_EQ(static_cast<int>(content.frames.size()), content.frame + 1)
           << "the trajectory and the number of frames were written together";
-      EXPECT_EQ(reader.surfels().size(), 4000U);
+      ASSERT_EQ(reader.surfels().size(), 1U);
+      EXPECT_EQ(reader.surfels()[0].surfels.size(), 4000U);
     }
     EXPECT_TRUE(readFile(path) == before);
     MapWriter(path, MapWriter::Mode::extend).write(ExampleMap().update);

@@ -54,8 +54,8 @@ class MapOptions : public testing::Test {
 TemporaryFolder* MapOptions::folder_ = nullptr;
 
 TEST_F(MapOptions, ARunGoesOnInTheMapOfAnother) {
-  const std::string out = own / "out", map = out + "/map.pfdb";
-  ASSERT_EQ(run(with({"--output", out})), 0) << said;
+  const std::string out = own / "out/latest", map = out + "/map.pfdb";
+  ASSERT_EQ(run(with({"--output", own / "out"})), 0) << said;
   ASSERT_EQ(run({"check", map}, "posefusion_map"), 0) << said;
   EXPECT_FALSE(fs::exists(out + "/map.partial.pfdb"));
   const std::string before = readFile(map);
@@ -63,23 +63,27 @@ TEST_F(MapOptions, ARunGoesOnInTheMapOfAnother) {
 
   ASSERT_EQ(run(with({"--output", own / "l", "--map", map, "--localize-only"})), 0) << said;
   EXPECT_TRUE(readFile(map) == before);
-  EXPECT_FALSE(fs::exists(own / "l/map.pfdb"));
+  EXPECT_FALSE(fs::exists(own / "l/latest/map.pfdb"));
   EXPECT_NE(said.find("0 bad"), std::string::npos) << said;
+  const std::string summary = readFile(own / "l/latest/summary.json");
+  EXPECT_NE(summary.find("\"located\""), std::string::npos) << summary;
+  EXPECT_EQ(summary.find("\"fused\""), std::string::npos) << "nothing is taken into the map";
   EXPECT_NE(said.find("ATE"), std::string::npos) << said;
 
   ASSERT_EQ(run(with({"--output", own / "m", "--map", map})), 0) << said;
   EXPECT_TRUE(readFile(map) == before);
-  EXPECT_GT(readSavedMap(own / "m/map.pfdb").frames.size(), frames);
+  EXPECT_GT(readSavedMap(own / "m/latest/map.pfdb").frames.size(), frames);
 
   ASSERT_EQ(run(with({"--output", own / "c", "--map", map, "--continue"})), 0) << said;
-  EXPECT_FALSE(fs::exists(own / "c/map.pfdb"));
-  EXPECT_EQ(readSavedMap(map).frames.size(), readSavedMap(own / "m/map.pfdb").frames.size());
-  EXPECT_EQ(readSavedMap(map).surfels.size(), readSavedMap(own / "m/map.pfdb").surfels.size());
-  EXPECT_TRUE(readFile(own / "c/map.ply") == readFile(own / "m/map.ply"));
+  EXPECT_FALSE(fs::exists(own / "c/latest/map.pfdb"));
+  EXPECT_EQ(readSavedMap(map).frames.size(), readSavedMap(own / "m/latest/map.pfdb").frames.size());
+  EXPECT_EQ(surfelsIn(readSavedMap(map).surfels),
+            surfelsIn(readSavedMap(own / "m/latest/map.pfdb").surfels));
+  EXPECT_TRUE(readFile(own / "c/latest/map.ply") == readFile(own / "m/latest/map.ply"));
 }
 
 TEST_F(MapOptions, AKilledRunLeavesAWholeMap) {
-  const std::string out = own / "out", partial = out + "/map.partial.pfdb";
+  const std::string out = own / "out";
   // The same frames over and over: enough for minutes.
   const std::string input = own / "long";
   fs::copy(sequence(), input, fs::copy_options::recursive);
@@ -95,20 +99,43 @@ TEST_F(MapOptions, AKilledRunLeavesAWholeMap) {
   own.write("long/associations.txt", list);
   const Program program("posefusion_run", {input, "--detector", "none", "--output", out},
                         own / "run.txt");
+  const auto partial = [&] {
+    const fs::path folder = fs::exists(out) ? fs::directory_iterator(out)->path() : fs::path();
+    return (folder / "map.partial.pfdb").string();
+  };
   // SQLite's file is there before the first write, its log grows with it.
   for (int i = 0; i < 600; ++i) {
     std::error_code none;
-    if (fs::file_size(partial + "-wal", none) > 300'000 && !none) break;
+    if (fs::file_size(partial() + "-wal", none) > 300'000 && !none) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   program.send(SIGKILL);
   EXPECT_EQ(program.exitCode(), -SIGKILL) << program.said();
-  ASSERT_EQ(run({"check", partial}, "posefusion_map"), 0) << said;
-  EXPECT_GT(readSavedMap(partial).frames.size(), 0U);
-  // The next run keeps it under another name.
-  ASSERT_EQ(run(with({"--output", out, "--max-frames", "3"})), 0) << said;
-  EXPECT_EQ(run({"check", partial + ".old"}, "posefusion_map"), 0) << said;
+  ASSERT_EQ(run({"check", partial()}, "posefusion_map"), 0) << said;
+  EXPECT_GT(readSavedMap(partial()).frames.size(), 0U);
+}
+
+TEST_F(MapOptions, ARunAfterAKilledContinuationHasItsOwnMap) {
+  // The log of the killed one was taken into the map of the next run in that folder.
+  ASSERT_EQ(run(with({"--output", own / "out"})), 0) << said;
+  const std::string first = own / "out/latest/map.pfdb", kept = fs::canonical(first);
+  {
+    const Program program("posefusion_run",
+                          with({"--output", own / "c", "--map", first, "--continue"}),
+                          own / "killed.txt");
+    for (int i = 0; i < 600 && !fs::exists(first + "-wal"); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    program.send(SIGKILL);
+    program.exitCode();
+  }
+  ASSERT_EQ(run(with({"--output", own / "out"})), 0) << said;
+  EXPECT_NE(fs::canonical(first), kept);
+  for (const std::string& map : {first, kept}) {
+    EXPECT_EQ(run({"check", map}, "posefusion_map"), 0) << said;
+  }
+  EXPECT_GE(readSavedMap(kept).frames.size(), readSavedMap(first).frames.size());
 }
 
 TEST_F(MapOptions, ABadMapIsRefusedBeforeAnythingRuns) {
@@ -120,7 +147,7 @@ TEST_F(MapOptions, ABadMapIsRefusedBeforeAnythingRuns) {
   EXPECT_NE(run(with({"--output", out, "--localize-only"})), 0);
   EXPECT_NE(run(with({"--output", out, "--map", bad, "--localize-only", "--continue"})), 0);
   ASSERT_EQ(run(with({"--output", own / "m", "--max-frames", "3"})), 0) << said;
-  const std::string map = own / "m/map.pfdb";
+  const std::string map = own / "m/latest/map.pfdb";
   const std::string camera = own.write(
       "camera.yaml",
       "width: 320\nheight: 240\nfx: 200\nfy: 200\ncx: 160\ncy: 120\ndepth_factor: 5000\n");

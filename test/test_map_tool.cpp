@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_map as a user runs it.
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
@@ -56,6 +57,33 @@ TEST_F(MapToolTest, CheckReadsItAll) {
   const std::string cut = folder.write("cut.pfdb", before.substr(0, before.size() / 2));
   EXPECT_EQ(run({"check", cut}), 1);
   EXPECT_TRUE(hasSaid("posefusion_map: " + cut + ": is damaged")) << said;
+}
+
+TEST_F(MapToolTest, CheckSaysWhatAnUnfinishedMapMisses) {
+  const std::string copy = folder.write("copy.pfdb", before);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(copy.c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "DELETE FROM blobs WHERE name = 'closed'", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  std::string open = readFile(copy);
+  open[18] = open[19] = 2;  // as its writer leaves it until it is closed
+  folder.write("copy.pfdb", open);
+  EXPECT_EQ(run({"check", copy}), 1);
+  EXPECT_TRUE(hasSaid("was not closed by its writer, and its log " + copy + "-wal is not there"))
+      << said;
+  EXPECT_TRUE(hasSaid("there are 10 frames, 2 keyframes and 4000 surfels")) << said;
+}
+
+TEST_F(MapToolTest, RepairMendsInACopy) {
+  std::string damaged = before;
+  damaged[damaged.size() / 2] ^= 4;
+  const std::string bad = folder.write("bad.pfdb", damaged), good = folder / "good.pfdb";
+  EXPECT_EQ(run({"repair", bad, "--output", good}), 0) << said;
+  EXPECT_TRUE(hasSaid("lost: ") || hasSaid("nothing is lost")) << said;
+  EXPECT_EQ(run({"check", good}), 0) << said;
+  EXPECT_TRUE(readFile(bad) == damaged);
+  EXPECT_EQ(run({"repair", bad, "--output", good}), 1);
+  EXPECT_TRUE(hasSaid("good.pfdb: is there already")) << said;
 }
 
 TEST_F(MapToolTest, ExportWritesWhatOthersRead) {

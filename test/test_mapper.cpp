@@ -140,7 +140,8 @@ TEST_F(MapperTest, BadInputIsNamedAndChangesNothing) {
   RgbdFrame other = next.frame;
   other.camera.fx *= 1.1;
   status = mapper.process({other, {}, {}});
-  EXPECT_EQ(status.detail, "the camera or the image size is not that of the frames before");
+  EXPECT_EQ(status.detail, "the camera (" + describe(other.camera) + ") is not that of the map (" +
+                               describe(next.frame.camera) + ")");
 
   EXPECT_EQ(mapper.process({next.frame, {}, {}}).outcome, FrameOutcome::fused);
 }

@@ -83,7 +83,7 @@ TEST(MapPoints, AreThinAndStable) {
   const MapPoints& points = room().points;
   ASSERT_GT(points.size(), 100U);
   EXPECT_LT(points.size(), room().map.stableCount() / 2);
-  const MapPoints coarse = thinnedPoints(room().map, 0.2);
+  const MapPoints coarse = thinnedPoints(room().map, kFirstFragment, 0.2);
   EXPECT_LT(coarse.size(), points.size() / 2);
 }
 
@@ -93,10 +93,10 @@ TEST(PlaceSearch, FindsThePlaceAfterAFall) {
   for (const double turn : {-1.2, 0.4}) {
     const Eigen::Isometry3d before = afterFall(truth, turn, 0.4);
     const auto found =
-        searchPlaces(room().points, placeQuery(frame), before, room().up, PlaceSearchConfig{});
+        searchPlaces(room().points, placeQuery(frame), {0, before}, room().up, PlaceSearchConfig{});
     ASSERT_FALSE(found.empty());
-    EXPECT_LT(metresOff(found[0].T_map_camera, truth), 0.25) << turn;
-    EXPECT_LT(radiansOff(found[0].T_map_camera, truth), 0.175) << turn;
+    EXPECT_LT(metresOff(found[0].pose.T_map_camera, truth), 0.25) << turn;
+    EXPECT_LT(radiansOff(found[0].pose.T_map_camera, truth), 0.175) << turn;
   }
 }
 
@@ -106,11 +106,11 @@ TEST(PlaceSearch, FindsThePlaceFromBelow) {
   Eigen::Isometry3d before = afterFall(truth, 0.3, 0.3);
   before.translation() += 0.5 * room().up;
   before.linear() *= Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const auto found = searchPlaces(room().points, placeQuery(room().frame(11)), before, room().up,
-                                  PlaceSearchConfig{});
+  const auto found = searchPlaces(room().points, placeQuery(room().frame(11)), {0, before},
+                                  room().up, PlaceSearchConfig{});
   ASSERT_FALSE(found.empty());
-  EXPECT_LT(metresOff(found[0].T_map_camera, truth), 0.25);
-  EXPECT_LT(radiansOff(found[0].T_map_camera, truth), 0.175);
+  EXPECT_LT(metresOff(found[0].pose.T_map_camera, truth), 0.25);
+  EXPECT_LT(radiansOff(found[0].pose.T_map_camera, truth), 0.175);
 }
 
 /// The map as a camera sees it.
@@ -137,22 +137,23 @@ TEST(PlaceSearch, FindsACameraThatLiesOnItsSide) {
     Eigen::Isometry3d lying = standing;
     lying.translation() -= (high_m - 0.35) * room().up;
     lying.linear() *= Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    const auto found = searchPlaces(room().points, placeQuery(seenFrom(lying)),
-                                    afterFall(standing, 0.4, 0.3), room().up, PlaceSearchConfig{});
+    const auto found =
+        searchPlaces(room().points, placeQuery(seenFrom(lying)), {0, afterFall(standing, 0.4, 0.3)},
+                     room().up, PlaceSearchConfig{});
     ASSERT_FALSE(found.empty());
-    EXPECT_LT(metresOff(found[0].T_map_camera, lying), 0.25) << roll;
-    EXPECT_LT(radiansOff(found[0].T_map_camera, lying), 0.175) << roll;
+    EXPECT_LT(metresOff(found[0].pose.T_map_camera, lying), 0.25) << roll;
+    EXPECT_LT(radiansOff(found[0].pose.T_map_camera, lying), 0.175) << roll;
   }
 }
 
 TEST(PlaceSearch, CandidatesAreSortedAndApart) {
   const auto found = searchPlaces(room().points, placeQuery(room().frame(3)),
-                                  room().sequence.pose(0), room().up, PlaceSearchConfig{});
+                                  {0, room().sequence.pose(0)}, room().up, PlaceSearchConfig{});
   ASSERT_GT(found.size(), 1U);
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_GE(found[i - 1].score, found[i].score);
     EXPECT_LE(found[i].score, 1.5);
-    const Eigen::Isometry3d &a = found[0].T_map_camera, &b = found[i].T_map_camera;
+    const Eigen::Isometry3d &a = found[0].pose.T_map_camera, &b = found[i].pose.T_map_camera;
     EXPECT_TRUE(metresOff(a, b) > 0.19 || radiansOff(a, b) > 0.16);
   }
 }
@@ -160,29 +161,29 @@ TEST(PlaceSearch, CandidatesAreSortedAndApart) {
 TEST(PlaceSearch, GivesNothingOfNothing) {
   const PlaceQuery query = placeQuery(room().frame(0));
   const Eigen::Isometry3d T = room().sequence.pose(0);
-  EXPECT_TRUE(searchPlaces(MapPoints{}, query, T, room().up, PlaceSearchConfig{}).empty());
+  EXPECT_TRUE(searchPlaces(MapPoints{}, query, {0, T}, room().up, PlaceSearchConfig{}).empty());
   PlaceQuery blind = query;
   blind.depth_m = cv::Mat::zeros(query.depth_m.size(), CV_32FC1);
-  EXPECT_TRUE(searchPlaces(room().points, blind, T, room().up, PlaceSearchConfig{}).empty());
+  EXPECT_TRUE(searchPlaces(room().points, blind, {0, T}, room().up, PlaceSearchConfig{}).empty());
 }
 
 TEST(PlaceSearch, GivesTheSameBitsForAnyNumberOfThreads) {
   std::vector<PlaceCandidate> found[2];
   for (int i = 0; i < 2; ++i) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, i == 0 ? 1 : 4);
-    found[i] = searchPlaces(room().points, placeQuery(room().frame(5)), room().sequence.pose(0),
-                            room().up, PlaceSearchConfig{});
+    found[i] = searchPlaces(room().points, placeQuery(room().frame(5)),
+                            {0, room().sequence.pose(0)}, room().up, PlaceSearchConfig{});
   }
   ASSERT_EQ(found[0].size(), found[1].size());
   for (std::size_t i = 0; i < found[0].size(); ++i) {
     EXPECT_EQ(found[0][i].score, found[1][i].score);
-    EXPECT_EQ(found[0][i].T_map_camera.matrix(), found[1][i].T_map_camera.matrix());
+    EXPECT_EQ(found[0][i].pose.T_map_camera.matrix(), found[1][i].pose.T_map_camera.matrix());
   }
 }
 
 TEST(LoopWorker, FindsACameraThatWasLastSeenFallingOnItsBack) {
   // One keyframe, without a picture: features cannot help.
-  KeyframeView view = keyframeView(room().frame(0), 0, room().sequence.pose(0), true);
+  KeyframeView view = keyframeView(room().frame(0), 0, {0, room().sequence.pose(0)}, true);
   view.intensity.setTo(128);
   const Eigen::Isometry3d truth = room().sequence.pose(11);
   Eigen::Isometry3d last = afterFall(truth, 0.3, 0.3);
@@ -191,11 +192,40 @@ TEST(LoopWorker, FindsACameraThatWasLastSeenFallingOnItsBack) {
   LoopQuestion question;
   question.known = {view};
   question.place = std::make_shared<const PlaceQuestion>(
-      PlaceQuestion{room().frame(11), std::make_shared<const SurfelMap>(room().map), last});
+      PlaceQuestion{room().frame(11), std::make_shared<const SurfelMap>(room().map), {0, last}});
   LoopWorker worker{LoopConfig{}, TrackingConfig{}};
   const LoopAnswer answer = worker.answer(question);
   ASSERT_TRUE(answer.place);
   EXPECT_LT(metresOff(answer.place->alignment.T_map_camera, truth), 0.03);
+}
+
+TEST(LoopWorker, LooksInEachFragmentByItself) {
+  // The room is a fragment whose coordinates overlap with those of another, where a wall is.
+  auto map = std::make_shared<SurfelMap>(room().map.config());
+  map->restore({{2, room().map.collect()}}, room().map.frame());
+  SurfelArrays wall;
+  wall.resize(2500);
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    wall.x[i] = 0.05F * static_cast<float>(i % 50) - 1.2F;
+    wall.y[i] = 0.05F * static_cast<float>(i / 50) - 1.2F;
+    wall.z[i] = 0.7F;
+    wall.nz[i] = -1.0F;
+    wall.radius[i] = 0.05F;
+    wall.weight[i] = wall.confidence[i] = 50;
+    wall.created[i] = wall.seen[i] = map->frame();
+  }
+  map->add(wall, 0);
+  LoopQuestion question;
+  PlaceQuestion place{room().frame(11), map, {0, room().sequence.pose(8)}};
+  LoopWorker worker{LoopConfig{}, TrackingConfig{}};
+  question.place = std::make_shared<const PlaceQuestion>(place);
+  EXPECT_FALSE(worker.answer(question).place) << "it is not in the fragment of the last pose";
+  place.elsewhere.push_back({2, room().sequence.pose(8)});
+  question.place = std::make_shared<const PlaceQuestion>(place);
+  const LoopAnswer answer = worker.answer(question);
+  ASSERT_TRUE(answer.place);
+  EXPECT_EQ(answer.place->fragment, 2);
+  EXPECT_LT(metresOff(answer.place->alignment.T_map_camera, room().sequence.pose(11)), 0.03);
 }
 
 TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
@@ -203,7 +233,8 @@ TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
   Vector6d off;
   off << 0.05, -0.03, 0.05, 0.03, 0.05, -0.02;
   PlaceVerifier verifier{TrackingConfig{}};
-  const PlaceVerdict verdict = verifier.verify(room().map, room().frame(8), truth * expSe3(off));
+  const PlaceVerdict verdict =
+      verifier.verify(room().map, room().frame(8), {0, truth * expSe3(off)});
   EXPECT_TRUE(verdict.accepted()) << name(verdict.doubt);
   EXPECT_LT(metresOff(verdict.alignment.T_map_camera, truth), 0.02);
   EXPECT_LT(radiansOff(verdict.alignment.T_map_camera, truth), 0.02);
@@ -247,7 +278,7 @@ TEST(VerifyPlace, ATruePlaceIsNotBelievedThroughAGap) {
     truth.frame.depth.colRange(0, covered).setTo(0);
     WorkingFrame frame;
     frame.assign(truth.frame, cv::Mat(), FrameConfig{});
-    const PlaceVerdict verdict = verifier.verify(room().map, frame, truth.T_map_camera);
+    const PlaceVerdict verdict = verifier.verify(room().map, frame, {0, truth.T_map_camera});
     EXPECT_EQ(verdict.accepted(), open > 0.5) << name(verdict.doubt);
     EXPECT_EQ(verdict.doubt == PlaceDoubt::covered, open < 0.5) << name(verdict.doubt);
   }
@@ -260,7 +291,7 @@ TEST(VerifyPlace, NoWrongPlaceIsAccepted) {
   int wrong = 0;
   for (const double turn : {-0.7, -0.4, 0.4, 0.7}) {
     for (const double shift : {-0.4, 0.0, 0.4}) {
-      const PlaceVerdict v = verifier.verify(room().map, frame, afterFall(truth, turn, shift));
+      const PlaceVerdict v = verifier.verify(room().map, frame, {0, afterFall(truth, turn, shift)});
       const bool is_true = metresOff(v.alignment.T_map_camera, truth) < 0.1 &&
                            radiansOff(v.alignment.T_map_camera, truth) < 0.05;
       EXPECT_TRUE(is_true || !v.accepted()) << turn << " " << shift;

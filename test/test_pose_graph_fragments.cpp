@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion/graph/fragments.hpp"
-
 #include <gtest/gtest.h>
 
 #include "graph_scene.hpp"
@@ -17,10 +15,24 @@ TEST(PoseGraphFragments, JoinsALaterFragmentRigidly) {
     ASSERT_TRUE(result.accepted) << result.reason;
     EXPECT_LT(worstDistance(graph, truth), 1e-6);
     for (const Keyframe& k : graph.keyframes()) EXPECT_EQ(k.fragment, 0);
-    EXPECT_EQ(result.deformation.at(295).matrix(), Eigen::Isometry3d::Identity().matrix())
-        << "what was made before the new fragment began stays";
-    EXPECT_GT(result.deformation.at(300).translation().norm(), 1);
+    for (const int frame : {0, 295, 300, 400}) {
+      EXPECT_EQ(result.deformation.at(frame, 0).matrix(), Eigen::Isometry3d::Identity().matrix())
+          << "what is not in the later fragment stays";
+      EXPECT_GT(result.deformation.at(frame, 1).translation().norm(), 1);
+    }
+    EXPECT_TRUE(result.deformation.joins());
+    EXPECT_EQ(result.deformation.fragmentAfter(1), 0);
   }
+}
+
+TEST(PoseGraphFragments, OneWhoseCoordinatesAreRightAlreadyIsJoinedToo) {
+  const Poses truth = corridor();
+  PoseGraph graph = graphOf(Poses(truth.begin(), truth.begin() + 30));
+  addTo(graph, Poses(truth.begin() + 30, truth.end()), 1);
+  const GraphResult result = graph.joinFragment(loopOf(truth, 12, 40));
+  ASSERT_TRUE(result.accepted) << result.reason;
+  EXPECT_FALSE(result.deformation.isIdentity());
+  for (const Keyframe& k : graph.keyframes()) EXPECT_EQ(k.fragment, 0);
 }
 
 TEST(PoseGraphFragments, ALoopInOneFragmentLeavesTheOther) {

@@ -25,6 +25,42 @@ TEST(RunFolder, NoTwoRunsShareOne) {
   }
 }
 
+TEST(RunFolder, APartialOneGetsItsNameInOneStepAndTakesNoOthers) {
+  const TemporaryFolder folder;
+  RunFolder first(folder / "output", RunFolder::Name::partial);
+  RunFolder second(folder / "output", RunFolder::Name::partial);
+  EXPECT_NE(first.path(), second.path());
+  for (RunFolder* run : {&first, &second}) {
+    const std::string partial = run->path();
+    EXPECT_EQ(fs::path(partial).extension(), ".partial");
+    std::ofstream(run->file("map.ply")) << partial;
+    run->finish();
+    EXPECT_FALSE(fs::exists(partial));
+    EXPECT_EQ(readFile(run->file("map.ply")), partial);
+    run->finish();  // once more changes nothing
+    EXPECT_EQ(readFile(run->file("map.ply")), partial);
+  }
+  EXPECT_NE(first.path(), second.path());
+  // Somebody else has taken the name meanwhile.
+  RunFolder third(folder / "output", RunFolder::Name::partial);
+  const std::string wanted = fs::path(third.path()).replace_extension();
+  fs::create_directory(wanted);
+  std::ofstream(wanted + "/mine") << "another's";
+  std::ofstream(third.file("map.ply")) << "a map";
+  third.finish();
+  EXPECT_EQ(third.path(), wanted + "_2");
+  EXPECT_EQ(readFile(wanted + "/mine"), "another's");
+}
+
+TEST(RunFolder, WhatIsDiscardedLeavesNothing) {
+  const TemporaryFolder folder;
+  const RunFolder run(folder / "output", RunFolder::Name::partial, "_saved");
+  EXPECT_NE(run.path().find("_saved.partial"), std::string::npos) << run.path();
+  std::ofstream(run.file("map.ply")) << "half a map";
+  run.discard();
+  EXPECT_FALSE(fs::exists(folder / "output"));
+}
+
 TEST(RunFolder, LatestLeadsToTheRunThatSaidSoLast) {
   const TemporaryFolder folder;
   for (const std::string text : {"first", "second"}) {
@@ -32,6 +68,8 @@ TEST(RunFolder, LatestLeadsToTheRunThatSaidSoLast) {
     std::ofstream(run.file("map.ply")) << text;
     run.makeLatest();
     EXPECT_EQ(readFile(folder / "output/latest/map.ply"), text);
+    EXPECT_EQ(readFile(newestRun(folder / "output") + "/map.ply"), text);
+    EXPECT_EQ(newestRun(run.path()), run.path()) << "one run itself";
   }
   fs::rename(folder / "output", folder / "moved");
   EXPECT_EQ(readFile(folder / "moved/latest/map.ply"), "second") << "the link is a relative one";

@@ -123,7 +123,7 @@ class RunReportTest : public testing::Test {
   }
 
   nlohmann::json summary() {
-    report.write(folder.str(), map);
+    report.writeSummary(folder.str(), 0);
     return nlohmann::json::parse(readFile(folder / "summary.json"));
   }
 
@@ -176,7 +176,7 @@ TEST_F(RunReportTest, ADoubtfulFrameThatIsLocatedHasAPose) {
 }
 
 TEST_F(RunReportTest, TrajectoryHasTheLocatedFramesAlone) {
-  report.write(folder.str(), map);
+  report.writeTrajectories(folder.str());
   const Trajectory written = loadTrajectory(folder / "trajectory.txt");
   ASSERT_EQ(written.size(), 29U);
   EXPECT_EQ(written[7].stamp_ns, 800 * kMs);
@@ -193,7 +193,7 @@ TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
 
   report.addLeftOut("dropped");
   report.setCorrected(Trajectory(report.trajectory()));
-  report.writeSummary(folder.str(), map, 17);
+  report.writeSummary(folder.str(), 17);
   const auto s = nlohmann::json::parse(readFile(folder / "summary.json"));
   EXPECT_EQ(s.at("surfels"), 17);
   EXPECT_EQ(s.at("frames").at("read"), 31);
@@ -206,8 +206,7 @@ TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
 }
 
 TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {
-  report.write(folder.str(), map);
-  EXPECT_EQ(loadMap(folder / "map.ply").size(), 0U);
+  report.writePictures(folder.str(), map);
   EXPECT_FALSE(std::filesystem::exists(folder / "map.png"));
   EXPECT_TRUE(std::filesystem::exists(folder / "people.png"));
   for (const auto& entry : std::filesystem::directory_iterator(folder.str())) {
@@ -216,7 +215,7 @@ TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {
 }
 
 TEST_F(RunReportTest, AFolderThatIsGoneIsAnErrorThatNamesTheFile) {
-  const std::string error = errorOf([&] { report.write(folder / "none", map); });
+  const std::string error = errorOf([&] { report.writeTrajectories(folder / "none"); });
   EXPECT_NE(error.find("none/trajectory.txt: cannot be written"), std::string::npos) << error;
 }
 

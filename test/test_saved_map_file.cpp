@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "first_map_version.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/slam/loop_thread.hpp"
@@ -30,9 +31,13 @@ Config config() {
 
 const SimulatedSequence& room() { return exactBox<kFrames>(); }
 
-bool equal(SurfelArrays a, const SurfelArrays& b) {
-  bool same = true;
-  a.forEachArray(b, [&](const auto& x, const auto& y) { same = same && x == y; });
+bool equal(const std::vector<FragmentSurfels>& a, const std::vector<FragmentSurfels>& b) {
+  bool same = a.size() == b.size();
+  for (std::size_t i = 0; i < a.size() && same; ++i) {
+    same = a[i].fragment == b[i].fragment;
+    SurfelArrays own = a[i].surfels;
+    own.forEachArray(b[i].surfels, [&](const auto& x, const auto& y) { same = same && x == y; });
+  }
   return same;
 }
 
@@ -101,7 +106,7 @@ TEST_F(SavedMapFile, GivesBackWhatAMapperHas) {
   const SavedMap saved = readSavedMap(own / "map.pfdb");
   ASSERT_TRUE(saved.T_world_map);
   EXPECT_EQ(saved.T_world_map->matrix(), T_world_map.matrix());
-  EXPECT_TRUE(equal(saved.surfels, mapper.map().collect()));
+  EXPECT_TRUE(equal(saved.surfels, mapper.map().parts()));
   EXPECT_EQ(saved.frame, mapper.map().frame());
   EXPECT_EQ(saved.frames.size(), mapper.backEnd().frames().size());
   EXPECT_EQ(saved.brightness.gain, mapper.brightness().gain);
@@ -116,6 +121,31 @@ TEST_F(SavedMapFile, GivesBackWhatAMapperHas) {
     EXPECT_EQ(cv::norm(a.depth_mm, b.depth_mm, cv::NORM_INF), 0);
     EXPECT_EQ(cv::norm(a.thumbnail.color, b.thumbnail.color, cv::NORM_INF), 0);
     EXPECT_EQ(cv::norm(a.thumbnail.depth_m, b.thumbnail.depth_m, cv::NORM_INF), 0);
+  }
+}
+
+TEST_F(SavedMapFile, PicturesOfAnotherShrinkAreTakenOver) {
+  for (const int shrink : {2, 4}) {
+    Config coarse = config();
+    coarse.frame.shrink = shrink;
+    Mapper mapper(coarse);
+    const SavedMap saved = readSavedMap(copy());
+    mapper.load(saved, MapUse::extend);
+    const PinholeCamera camera = saved.camera.shrunk(shrink);
+    ASSERT_EQ(mapper.keyframeViews().size(), saved.keyframes.size());
+    for (const KeyframeView& view : mapper.keyframeViews()) {
+      EXPECT_EQ(view.intensity.size(), cv::Size(camera.width, camera.height));
+      EXPECT_EQ(view.depth_mm.size(), view.intensity.size());
+      EXPECT_TRUE(view.camera == camera);
+      EXPECT_GT(cv::countNonZero(view.depth_mm), camera.width * camera.height / 2);
+    }
+    // And back, into a session of full size.
+    Mapper fine(config());
+    SavedMap again = mapper.saved(saved.camera);
+    fine.load(std::move(again), MapUse::extend);
+    EXPECT_EQ(fine.keyframeViews().back().intensity.size(),
+              cv::Size(saved.camera.width, saved.camera.height));
+    fs::remove(own / "map.pfdb");
   }
 }
 
@@ -156,19 +186,32 @@ TEST_F(SavedMapFile, ACameraElsewhereIsFoundAndTheMapGrows) {
 
   session.save(path, MapWriter::Mode::extend);
   const SavedMap more = readSavedMap(path);
-  EXPECT_TRUE(equal(more.surfels, session.mapper.map().collect()));
+  EXPECT_TRUE(equal(more.surfels, session.mapper.map().parts()));
   EXPECT_EQ(more.frames.size(), session.mapper.backEnd().frames().size());
   EXPECT_EQ(more.views.size(), graph.keyframes().size());
   EXPECT_EQ(more.constraints.size(), graph.constraints().size());
+}
+
+TEST_F(SavedMapFile, AMapOfVersion1GoesOnAsOneOfVersion2) {
+  const std::string path = copy();
+  makeFirstVersion(path);
+  Session session;
+  session.mapper.load(readSavedMap(path), MapUse::extend);
+  EXPECT_GT(session.follow(kElsewhere, kElsewhere + 25), 5);
+  session.save(path, MapWriter::Mode::extend);
+  const SavedMap more = readSavedMap(path);
+  EXPECT_TRUE(equal(more.surfels, session.mapper.map().parts()));
+  EXPECT_EQ(more.frames.size(), session.mapper.backEnd().frames().size());
+  EXPECT_EQ(more.views.size(), session.mapper.backEnd().graph().keyframes().size());
 }
 
 TEST_F(SavedMapFile, LocalisingAloneChangesNothing) {
   const std::string path = copy(), before = readFile(path);
   Session session;
   session.mapper.load(readSavedMap(path), MapUse::localize_only);
-  const SurfelArrays surfels = session.mapper.map().collect();
+  const auto surfels = session.mapper.map().parts();
   EXPECT_GT(session.follow(kElsewhere, kFrames), kFrames - kElsewhere - 18);
-  EXPECT_TRUE(equal(surfels, session.mapper.map().collect()));
+  EXPECT_TRUE(equal(surfels, session.mapper.map().parts()));
   EXPECT_EQ(session.mapper.map().frame(), kMapped - 1);
   EXPECT_EQ(session.mapper.backEnd().graph().version(), 0);
   EXPECT_TRUE(readFile(path) == before);
@@ -217,7 +260,7 @@ TEST_F(SavedMapFile, AFullDiskIsMadeUpForByTheNextWrite) {
     EXPECT_TRUE(recording.finish(session.mapper));
   }
   const SavedMap saved = readSavedMap(path);
-  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().collect()));
+  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().parts()));
   EXPECT_EQ(saved.frames.size(), static_cast<std::size_t>(kMapped));
 }
 
@@ -234,7 +277,7 @@ TEST_F(SavedMapFile, ARecordingGoesOnAfterItWasFinished) {
   }
   const SavedMap saved = readSavedMap(path);
   EXPECT_EQ(saved.frames.size(), 10U);
-  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().collect()));
+  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().parts()));
 }
 
 TEST_F(SavedMapFile, WhatCannotBeUsedIsRefusedByItsName) {

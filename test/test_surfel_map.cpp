@@ -43,6 +43,49 @@ TEST(SurfelMap, HoldsEachSurfelOnceWithinTheBoundsOfItsBlock) {
   }
 }
 
+TEST(SurfelMap, FragmentsShareNoBlockAndAreRestored) {
+  SurfelMap map = mapOf(cloud(2000, 3));
+  map.add(cloud(1000, 3, 4), 2);
+  map.add(cloud(500, 5, 5));
+  EXPECT_EQ(map.size(), 3500U);
+  std::size_t count = 0;
+  map.forEachSurfelOf(2, [&](const SurfelArrays&, std::size_t) { ++count; });
+  EXPECT_EQ(count, 1000U);
+  SurfelMap again(MapConfig{});
+  again.restore(map.parts(), 7);
+  ASSERT_EQ(again.blocks().size(), map.blocks().size());
+  for (std::size_t i = 0; i < map.blocks().size(); ++i) {
+    EXPECT_EQ(again.blocks()[i].fragment, map.blocks()[i].fragment);
+    EXPECT_EQ(again.blocks()[i].surfels.x, map.blocks()[i].surfels.x);
+  }
+  map.removeFragments([](int fragment) { return fragment == 0; });
+  EXPECT_EQ(rowsOf(map.collect()), rowsOf(cloud(1000, 3, 4)));
+}
+
+TEST(SurfelMap, BlocksAreSmallHoweverFarFromTheOrigin) {
+  for (const Eigen::Vector3f& way :
+       {Eigen::Vector3f(1, 0, 0), Eigen::Vector3f(-1, 0, 0), Eigen::Vector3f(0, 1, 0),
+        Eigen::Vector3f(0, -1, 0), Eigen::Vector3f(0, 0, -1), Eigen::Vector3f(0, 0, 1)}) {
+    SurfelMap map(MapConfig{});
+    std::size_t added = 0;
+    for (const float far_m : {0.0F, 100.0F, 249.9F, 250.1F, 300.0F, 700.0F, 3000.0F, 400000.0F}) {
+      SurfelArrays surfels = cloud(200, 2);
+      for (std::size_t i = 0; i < surfels.size(); ++i) {
+        surfels.x[i] += far_m * way.x();
+        surfels.y[i] += far_m * way.y();
+        surfels.z[i] += far_m * way.z();
+      }
+      added += map.add(surfels);
+    }
+    EXPECT_EQ(added, 1600U);
+    EXPECT_GT(map.blocks().size(), 300U);
+    for (const SurfelBlock& block : map.blocks()) {
+      EXPECT_EQ(block.fragment, kFirstFragment);
+      EXPECT_LE(block.bounds.sizes().maxCoeff(), SurfelMap::kBlockSide_m * 1.001F);
+    }
+  }
+}
+
 TEST(SurfelMap, BoundsFollowSurfelsThatFusionMoves) {
   const SurfelMap map = fused(SurfelMap::kBlockSide_m, 12);
   for (const SurfelBlock& block : map.blocks()) {

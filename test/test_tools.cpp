@@ -2,95 +2,18 @@
 // The programs as a user runs them: exit codes, messages, files.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <thread>
-#include <vector>
-
-#include "posefusion/core/stamps.hpp"
-#include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
-#include "program.hpp"
-#include "simulator/output.hpp"
-#include "simulator/scenario.hpp"
-#include "simulator/simulation.hpp"
-#include "temporary_folder.hpp"
+#include "tools_scene.hpp"
 
 namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kFrames = 12;
-
-std::vector<fs::path> filesIn(const std::string& folder) {
-  std::vector<fs::path> files(fs::directory_iterator(folder), fs::directory_iterator{});
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-class ToolsTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    simulator::ScenarioChanges changes;
-    changes.duration_s = kFrames / 30.0;
-    simulator::Simulation simulation(simulator::loadScenario("box_walker", changes));
-    const auto output = simulator::openTumOutput(*folder_ / "sequence", simulation);
-    for (int i = 0; i < kFrames; ++i) output->add(simulation.frame(i));
-    output->finish(simulation);
-  }
-  static void TearDownTestSuite() { delete folder_; }
-
-  /// A copy of the sequence that a test may damage.
-  std::string copy(const std::string& name) const {
-    fs::copy(sequence(), own / name, fs::copy_options::recursive);
-    return own / name;
-  }
-  /// The same frames over and over: enough for minutes.
-  std::string longSequence() const {
-    const std::string input = copy("long");
-    const auto images = filesIn(input + "/rgb");
-    std::string list;
-    for (int i = 0; i < 20000; ++i) {
-      const std::string name = formatStamp(1'000'000'000LL + i * 33'000'000LL);
-      // There and back, so that the camera never jumps.
-      const int phase = i % (2 * kFrames - 2);
-      const int at = phase < kFrames ? phase : 2 * kFrames - 2 - phase;
-      const std::string image = images[static_cast<std::size_t>(at)].filename().string();
-      list += name + " rgb/" + image + " " + name + " depth/" + image + "\n";
-    }
-    own.write("long/associations.txt", list);
-    return input;
-  }
-  static std::string sequence() { return *folder_ / "sequence"; }
-
-  int run(std::vector<std::string> arguments, const std::string& name = "posefusion_run") {
-    const Program program(name, std::move(arguments), own / "log.txt");
-    const int code = program.exitCode();
-    said = program.said();
-    return code;
-  }
-  bool hasSaid(const std::string& text) const { return said.find(text) != std::string::npos; }
-
-  static nlohmann::json summaryOf(const std::string& output) {
-    return nlohmann::json::parse(readFile(output + "/summary.json"));
-  }
-
-  TemporaryFolder own;
-  std::string said;
-
- private:
-  static TemporaryFolder* folder_;
-};
-TemporaryFolder* ToolsTest::folder_ = nullptr;
 
 TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
-  const std::string one = own / "one", two = own / "two";
+  const std::string one = own / "one", two = own / "two", first = one + "/latest/";
   const std::vector<std::string> common = {sequence(), "--detector", "recorded", "--save-masks"};
   const auto with = [&](const std::string& output, const std::string& threads) {
     auto arguments = common;
@@ -101,18 +24,18 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(hasSaid("12 read, 12 tracked, 0 lost")) << said;
   ASSERT_EQ(run(with(two, "2")), 0) << said;
   for (const char* file : {"trajectory.txt", "map.ply", "map.png", "people.png", "people.json"}) {
-    EXPECT_EQ(readFile(one + "/" + file), readFile(two + "/" + file)) << file;
-    EXPECT_FALSE(readFile(one + "/" + file).empty()) << file;
+    EXPECT_EQ(readFile(first + file), readFile(two + "/latest/" + file)) << file;
+    EXPECT_FALSE(readFile(first + file).empty()) << file;
   }
-  EXPECT_EQ(readFile(one + "/people.json"), readFile(sequence() + "/people.json"));
+  EXPECT_EQ(readFile(first + "people.json"), readFile(sequence() + "/people.json"));
   const auto summary = summaryOf(one);
   EXPECT_LT(summary.at("ate_rmse_m").get<double>(), 0.02);
-  EXPECT_EQ(summary.at("surfels"), loadMap(one + "/map.ply").size());
+  EXPECT_EQ(summary.at("surfels"), loadMap(first + "map.ply").size());
   for (const auto& mask : fs::directory_iterator(sequence() + "/mask")) {
-    EXPECT_TRUE(fs::exists(fs::path(one) / "mask" / mask.path().filename())) << mask.path();
+    EXPECT_TRUE(fs::exists(fs::path(first) / "mask" / mask.path().filename())) << mask.path();
   }
   EXPECT_EQ(run({one, two}, "posefusion_evaluate"), 1);
-  EXPECT_EQ(run({sequence() + "/groundtruth.txt", one + "/trajectory.txt", "--json", "--plot",
+  EXPECT_EQ(run({sequence() + "/groundtruth.txt", first + "trajectory.txt", "--json", "--plot",
                  own / "plot.png"},
                 "posefusion_evaluate"),
             0)
@@ -152,7 +75,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
   EXPECT_GT(fs::file_size(own / "plan.png"), 10'000U);
 
   // Half of the poses taken away, and a jump in what is left.
-  Trajectory half = loadTrajectory(out + "/trajectory.txt");
+  Trajectory half = loadTrajectory(out + "/latest/trajectory.txt");
   half.resize(kFrames / 2);
   half.back().T_world_camera.translation().x() += 1.0;
   saveTrajectory(own / "half.txt", half, "");
@@ -164,7 +87,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
 
   ASSERT_EQ(run({"covariance", sequence(), status, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_EQ(nlohmann::json::parse(said).at("motions"), kFrames - 1);
-  EXPECT_EQ(run({"covariance", sequence(), out + "/trajectory.txt"}, "posefusion_evaluate"), 1);
+  EXPECT_EQ(run({"covariance", sequence(), out + "/latest/trajectory.txt"}, "posefusion_evaluate"), 1);
   EXPECT_TRUE(hasSaid("is no table of posefusion_run --save-status")) << said;
   EXPECT_EQ(run({own.str(), out}, "posefusion_evaluate"), 1);
   EXPECT_TRUE(hasSaid("has no groundtruth.txt")) << said;
@@ -184,6 +107,11 @@ TEST_F(ToolsTest, SettingsComeFromFileModeAndOptions) {
   EXPECT_TRUE(hasSaid("blur.threshold is -1, expected 0 to")) << said;
   EXPECT_EQ(run({sequence(), "--mode", "fast"}), 1);
   EXPECT_TRUE(hasSaid("mode is 'fast', expected one of elastic, posefusion, pfh")) << said;
+  EXPECT_NE(run({sequence(), "--max-frames", "-3"}), 0);
+  EXPECT_TRUE(hasSaid("'-3': expected a whole number, 0 to 1000000000")) << said;
+  EXPECT_NE(run({sequence(), "--threads", "-1"}), 0);
+  EXPECT_TRUE(hasSaid("'-1': expected a whole number, 0 to 1024")) << said;
+  EXPECT_NE(run({sequence(), "--threads", "two"}), 0);
   EXPECT_NE(run({sequence(), "--faster"}), 0);
   EXPECT_TRUE(hasSaid("--faster")) << said;
 }
@@ -232,53 +160,6 @@ TEST_F(ToolsTest, DamagedFramesAreCountedAndTheRestIsDone) {
   EXPECT_EQ(frames.at("bad"), 3);
   EXPECT_EQ(frames.at("lost"), 1);
   EXPECT_EQ(frames.at("tracked"), kFrames - 4);
-}
-
-TEST_F(ToolsTest, CtrlCEndsItInOrderWithEverythingWritten) {
-  const std::string input = longSequence();
-  for (const int signal : {SIGINT, SIGTERM}) {
-    const std::string output = own / ("out" + std::to_string(signal));
-    const Program program("posefusion_run",
-                          {input, "--detector", "none", "--output", output, "--save-masks"},
-                          own / "log.txt");
-    // Once some masks are there, frames are being processed.
-    for (int i = 0; i < 600; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      if (!fs::is_directory(output + "/mask")) continue;
-      if (std::distance(fs::directory_iterator(output + "/mask"), {}) > 5) break;
-    }
-    program.send(signal);
-    EXPECT_EQ(program.exitCode(), 128 + signal);
-    EXPECT_NE(program.said().find("interrupted"), std::string::npos) << program.said();
-    const auto frames = summaryOf(output).at("frames");
-    EXPECT_GT(frames.at("tracked").get<int>(), 3);
-    EXPECT_LT(frames.at("read").get<int>(), 20000);
-    EXPECT_EQ(loadTrajectory(output + "/trajectory.txt").size(), frames.at("tracked"));
-    EXPECT_NO_THROW(loadMap(output + "/map.ply"));
-    EXPECT_TRUE(fs::exists(output + "/people.png"));
-    EXPECT_TRUE(fs::exists(output + "/people.json"));
-  }
-}
-
-TEST_F(ToolsTest, AKilledRunLeavesTheTrajectorySoFarAndAFinishedOneOnlyTheWholeOne) {
-  const std::string output = own / "out", journal = output + "/trajectory.partial.txt";
-  const Program program("posefusion_run",
-                        {longSequence(), "--detector", "none", "--output", output},
-                        own / "log.txt");
-  const auto lines = [&] {
-    const std::string text = fs::exists(journal) ? readFile(journal) : "";
-    return std::count(text.begin(), text.end(), '\n');
-  };
-  for (int i = 0; i < 600 && lines() < 10; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  program.send(SIGKILL);
-  EXPECT_EQ(program.exitCode(), -SIGKILL);
-  EXPECT_GE(loadTrajectory(journal).size(), 8U);
-  EXPECT_FALSE(fs::exists(output + "/trajectory.txt"));
-  ASSERT_EQ(run({sequence(), "--detector", "none", "--output", own / "finished"}), 0) << said;
-  EXPECT_TRUE(fs::exists(own / "finished/trajectory.txt"));
-  EXPECT_FALSE(fs::exists(own / "finished/trajectory.partial.txt"));
 }
 
 }  // namespace

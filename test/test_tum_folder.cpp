@@ -175,6 +175,28 @@ TEST_F(TumFolderTest, StampsGoingBackAreDefects) {
   EXPECT_EQ(frames[3].defect, "");
 }
 
+TEST_F(TumFolderTest, AStampOfTheFutureCostsItsOwnFrameAlone) {
+  root.write("sequence/associations.txt",
+             "1.0 rgb/1.000000.png 1.0 depth/1.000000.png\n"
+             "5000 rgb/1.100000.png 5000 depth/1.100000.png\n"
+             "1.2 rgb/1.200000.png 1.2 depth/1.200000.png\n"
+             "1.3 rgb/1.300000.png 1.3 depth/1.300000.png\n");
+  const auto frames = readAll();
+  EXPECT_EQ(frames[1].defect, "stamp 5000.000000 is later than those of the frames after it");
+  EXPECT_EQ(frames[2].defect, "");
+  EXPECT_EQ(frames[3].defect, "");
+}
+
+TEST_F(TumFolderTest, AWordThatIsNoStampIsNamedWithFileAndLine) {
+  root.write("sequence/associations.txt", "# a\n1.0 rgb/1.000000.png garbage depth/1.000000.png\n");
+  EXPECT_EQ(errorOf([&] { openTumFolder(folder); }), "");  // only the colour's stamp is used
+  root.write("sequence/associations.txt", "# a\ngarbage rgb/1.000000.png 1 depth/1.000000.png\n");
+  EXPECT_NE(errorOf([&] {
+              openTumFolder(folder);
+            }).find("associations.txt:2: 'garbage' is no stamp, expected decimal seconds"),
+            std::string::npos);
+}
+
 TEST_F(TumFolderTest, ErrorsSayWhatIsMissing) {
   const auto error = [&](const std::string& path) { return errorOf([&] { openTumFolder(path); }); };
   const auto has = [](const std::string& text, const std::string& part) {
@@ -239,7 +261,7 @@ TEST(CameraFile, ReadsOtherToolsFiles) {
 TEST(CameraFile, SavedFileReadsBackAsTheSame) {
   TemporaryFolder folder;
   CameraFile file{camera(), 5000.0};
-  file.camera.fx = 1.0 / 3.0;
+  file.camera.fx = 100.0 / 3.0;
   const auto expectSame = [&] {
     saveCamera(folder / "c.yaml", file);
     EXPECT_EQ(loadCamera(folder / "c.yaml").camera, file.camera);

@@ -40,9 +40,27 @@ TEST(VisibleBlocks, HideNothingThatAPictureOfAllShows) {
     SurfelRenderer().render(blocks, smallCamera(), T, RenderOptions{}, a);
     SurfelRenderer().render(one, smallCamera(), T, RenderOptions{}, b);
     EXPECT_TRUE(equal(a, b)) << k;
-    named += visibleBlocks(blocks, smallCamera(), T, 0).size();
+    named += visibleBlocks(blocks, smallCamera(), {0, T}, 0).size();
   }
   EXPECT_LT(named, 60 * blocks.blocks().size() / 4) << "most blocks are out of view";
+}
+
+TEST(VisibleBlocks, AreOfThePosesFragment) {
+  SurfelMap map = mapOf(cloud(5000, 8)), both = map;
+  both.add(cloud(5000, 8, 4), 1);
+  std::mt19937 random(3);
+  for (int k = 0; k < 10; ++k) {
+    const Eigen::Isometry3d T = randomPose(random, 2);
+    ModelView alone, beside;
+    SurfelRenderer().render(map, smallCamera(), T, RenderOptions{}, alone);
+    SurfelRenderer().render(both, smallCamera(), T, RenderOptions{}, beside);
+    EXPECT_TRUE(equal(alone, beside)) << k;
+    EXPECT_EQ(visibleBlocks(both, smallCamera(), {0, T}, 0),
+              visibleBlocks(map, smallCamera(), {0, T}, 0));
+    for (const std::uint32_t block : visibleBlocks(both, smallCamera(), {1, T}, 0)) {
+      EXPECT_EQ(both.blocks()[block].fragment, 1);
+    }
+  }
 }
 
 TEST(VisibleBlocks, KeepWhatLiesWithinTheDepth) {
@@ -59,8 +77,8 @@ TEST(VisibleBlocks, KeepWhatLiesWithinTheDepth) {
     // Where the whole map shows something near, the picture of the near blocks shows the same.
     const cv::Mat within = (b.depth_m > 0) & (b.depth_m < 1.8);
     EXPECT_EQ(cv::norm(a.depth_m, b.depth_m, cv::NORM_INF, within), 0) << k;
-    EXPECT_LT(visibleBlocks(map, smallCamera(), T, 2.0).size(),
-              visibleBlocks(map, smallCamera(), T, 0).size());
+    EXPECT_LT(visibleBlocks(map, smallCamera(), {0, T}, 2.0).size(),
+              visibleBlocks(map, smallCamera(), {0, T}, 0).size());
   }
 }
 

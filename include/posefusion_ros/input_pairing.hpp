@@ -44,7 +44,7 @@ class InputPairing {
   struct Handlers {
     std::function<void(const Set&)> set;
     std::function<void(const std_msgs::Header&, const std::string& reason)> unused;
-    /// Stamps went back by more than the threshold: everything begins anew.
+    /// Stamps went back by more than the threshold: images are paired anew.
     std::function<void(double seconds)> jump;
   };
 

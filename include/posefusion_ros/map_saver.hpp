@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/slam/mapper.hpp"
+#include "posefusion_ros/ended_maps.hpp"
 #include "posefusion_ros/parameters.hpp"
 
 namespace posefusion_ros {
@@ -37,8 +37,8 @@ struct MapToSave {
 /// Writes map.ply, map.pfdb (where the map has changed) and trajectory.txt. The files but map.pfdb
 /// lie in the map frame of TF; where no robot says otherwise that is the frame in which the offline
 /// runner writes them. Each map gets a pf::RunFolder of its own, so that none is written over by
-/// another. Until it is saved, trajectory.partial.txt and
-/// map.partial.pfdb grow there.
+/// another; until it is ended, trajectory.partial.txt and map.partial.pfdb grow there. What is
+/// asked for gets a folder of its own too, which nothing here touches again.
 class MapSaver {
  public:
   /// Where an output was named, throws InputError when nothing can be written there.
@@ -55,18 +55,26 @@ class MapSaver {
   /// naming it.
   void continueIn(const std::string& file, const MapToSave& map);
 
-  /// Returns a sentence that tells what was written where. Throws InputError when there is nothing
-  /// to save, or naming what cannot be written.
+  /// On request: writes the map as it is now into a new folder, `<date>_<time>_saved`, which is
+  /// there whole or not at all. Returns a sentence that tells what was written where. Throws
+  /// InputError when there is nothing to save, or naming what cannot be written.
   std::string save(const MapToSave& map);
 
-  /// At the end: as save(), but an error is the sentence that is returned. What was partial goes
-  /// when the whole is there.
+  /// Writes the map as it is now into its folder, or the file that it goes on in, and goes on. Says
+  /// what was written where; empty where there is nothing, or no folder was named. Throws
+  /// InputError naming what cannot be written.
+  std::string saveInBetween(const MapToSave& map);
+
+  /// At the end, where a folder was named, or a file to go on in: writes the map into its folder,
+  /// or file. What was partial goes when the whole is there. An error is the sentence that is
+  /// returned.
   std::string finish(const MapToSave& map);
 
-  /// Before a map is emptied: save() where a folder was named and there is something, and the next
-  /// map gets a folder of its own. Of the maps saved so, all but the newest are removed. Returns
-  /// what was written where, empty for nothing. Where this throws, nothing has changed.
-  std::string beginAnew(const MapToSave& map);
+  /// Before a map is emptied: saves it as at the end where there is something, and the next map
+  /// gets a folder of its own. Of the maps saved so, all but the newest are removed, and but that
+  /// with the file `next` (real path) that the next map begins in (empty: none). Returns what was
+  /// written where, empty for nothing. Where this throws, nothing has changed.
+  std::string beginAnew(const MapToSave& map, const std::string& next);
 
   /// As beginAnew(), where that has failed: what is partial is what stays of the old map.
   void abandon();
@@ -81,10 +89,14 @@ class MapSaver {
 
   bool isOn() const { return !settings_.output.empty(); }
 
+  /// Folder of the folders.
+  std::string output() const;
   const pf::RunFolder& folder();
+  std::string saveHere(const MapToSave& map);
   std::string record(const MapToSave& map, bool changed);
   std::string saveContinued(const MapToSave& map);
   void saveDatabase(const MapToSave& map);
+  void writeDatabase(const MapToSave& map, const std::string& file) const;
   void endRecording();
   void saveOnTheWay(const pf::Mapper& mapper);
   /// Waits for it; returns what went wrong.
@@ -92,7 +104,7 @@ class MapSaver {
 
   MapSaverSettings settings_;
   std::optional<pf::RunFolder> folder_;             // of the map that grows now
-  std::deque<pf::RunFolder> ended_;                 // of the maps before it, oldest first
+  EndedMaps ended_;                                 // folders of the maps before it
   std::unique_ptr<pf::TrajectoryJournal> journal_;  // from the first pose on
   std::optional<pf::MapRecording> recording_;       // from the first frame that was fused on
   std::string continued_;                           // the file that it goes on in, or empty

@@ -57,9 +57,14 @@ class MappingSession {
   std::string setUse(pf::MapUse use);
   /// @}
 
-  /// Stamps went back: saves, and begins an empty map or, where it must not change, this one again.
-  /// `lost`: what is lost because it could not be saved; empty for nothing.
+  /// A recording begins again: saves, and begins an empty map or, where it must not change, this
+  /// one again. `lost`: that the old map is, and why it could not be saved; empty where it was.
   std::string startAnew(std::string& lost);
+
+  /// The clock was put back: saves, and goes on in this map, in which the camera is looked for.
+  /// `unsaved`: that it could not be saved, and why; empty where it was. Returns what was written
+  /// where, empty for nothing.
+  std::string restartClock(std::string& unsaved);
 
   /// At the end: takes in what the closer still has to say, and saves. Returns what was written
   /// where, or why not.
@@ -76,7 +81,8 @@ class MappingSession {
   pf::LoopExchange loops_;
   pf::MapUse use_ = pf::MapUse::extend;
   std::string map_file_;      // that the map was loaded from, or empty
-  pf::PinholeCamera camera_;  // of the frames; no size before the first
+  pf::PinholeCamera camera_;  // of the frames of the map; no size before the first
+  pf::PinholeCamera seen_;    // of the last frame, of the map or not
 };
 
 }  // namespace posefusion_ros

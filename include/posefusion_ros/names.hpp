@@ -29,6 +29,7 @@ constexpr char kPeopleImage[] = "people_image";
 // Fusion.
 constexpr char kModelView[] = "model_view";
 constexpr char kStatus[] = "status";
+constexpr char kStateText[] = "state_text";
 constexpr char kOdometry[] = "odometry";
 constexpr char kPose[] = "pose";
 constexpr char kPath[] = "path";

@@ -22,6 +22,7 @@ namespace posefusion_ros {
 /// Frames and rates of the published poses.
 struct PoseOutputSettings {
   bool publish_tf = true;
+  bool tf_while_lost = true;  ///< with odom_frame: map -> odom goes on as it was known last
   std::string map_frame;
   std::string odom_frame;  ///< empty: nobody owns odometry, map -> base is published
   std::string base_frame;  ///< empty: the optical frame of the camera
@@ -48,11 +49,19 @@ class PoseOutput {
   /// well.
   bool publish(const std_msgs::Header& image, const pf::FrameStatus& status, std::string& note);
 
+  /// No pose is known: sends map -> odom as it was known last (see PoseOutputSettings), unless it
+  /// was sent with this stamp, or a later one, already. The robot moves on by its odometry. Without
+  /// odometry nothing is sent: it would be a pose, and a false one.
+  void hold(const ros::Time& stamp);
+
   /// The core's map in the map frame; nothing until the first pose could be published.
   const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
 
   /// Loops have moved the poses told so far: the path follows. `corrected`: of the camera.
   void correct(const pf::Trajectory& corrected);
+
+  /// Stamps begin anew, the map goes on: so does the transform, the path begins anew.
+  void restartClock();
 
   /// Another map, that begins with the next pose.
   void reset();
@@ -78,6 +87,8 @@ class PoseOutput {
   std::unique_ptr<ListeningLookup> lookup_;        // only where a frame has to be looked up
   std::unique_ptr<ListeningParentWatch> parents_;  // only where transforms are sent
   bool sends_ = false;                             // the last transform was sent
+  std::optional<Eigen::Isometry3d> T_map_odom_;    // as known last
+  ros::Time sent_;                                 // newest stamp of a transform
   tf2_ros::TransformBroadcaster broadcaster_;
   std::optional<Eigen::Isometry3d> T_map_start_;
   bool is_loaded_ = false;

@@ -16,4 +16,7 @@ namespace posefusion_ros {
 visualization_msgs::MarkerArray toMarkers(const pf::People& people, const pf::RgbdFrame& frame,
                                           const std_msgs::Header& header);
 
+/// Takes away what was shown before.
+visualization_msgs::MarkerArray noMarkers(const std_msgs::Header& header);
+
 }  // namespace posefusion_ros

@@ -26,6 +26,10 @@ class StageWatch {
   /// A frame is given up; `outcome` is one of TrackingStatusMsg.
   void givenUp(Time now, std::uint8_t outcome);
 
+  /// Why stamps and ROS time are of different clocks, told as WARN; empty: they are of one. How
+  /// late frames pass is not known then.
+  void tellClock(const std::string& defect);
+
   /// A value of the nodelet's own, shown until it is set anew.
   void set(const std::string& key, const std::string& value);
 
@@ -54,6 +58,7 @@ class StageWatch {
   std::map<std::string, std::size_t> given_up_;  // since the beginning, by outcome
   std::deque<double> latencies_s_;               // of the last frames
   std::map<std::string, std::string> values_;
+  std::string clock_;  // its defect
   int level_ = 0;
   std::string told_;
   bool may_be_silent_ = false;

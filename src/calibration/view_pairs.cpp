@@ -6,7 +6,6 @@
 
 #include "posefusion/calibration/pair_residual.hpp"
 #include "posefusion/core/parallel.hpp"
-#include "posefusion/graph/fragments.hpp"
 
 namespace pf {
 namespace {
@@ -17,7 +16,7 @@ constexpr double kLeastFacing = 0.5;   // cosine between optical axes: 60 degree
 
 bool maySeeTheSame(const ViewSurface& a, const ViewSurface& b) {
   const Eigen::Isometry3d &T_a = a.T_map_camera(), &T_b = b.T_map_camera();
-  return fragmentAt(T_a) == fragmentAt(T_b) &&
+  return a.fragment() == b.fragment() &&
          (T_a.translation() - T_b.translation()).norm() < kFarthest_m &&
          T_a.linear().col(2).dot(T_b.linear().col(2)) > kLeastFacing;
 }

@@ -96,7 +96,10 @@ Eigen::Vector3d normalOf(const SurfacePatch& p, const PinholeCamera& camera) {
 }
 
 ViewSurface::ViewSurface(const CalibrationView& view)
-    : id_(view.id), camera_(view.camera), T_map_camera_(view.T_map_camera) {
+    : id_(view.id),
+      camera_(view.camera),
+      T_map_camera_(view.T_map_camera),
+      fragment_(view.fragment) {
   const cv::Mat& depth = view.depth_mm;
   step_ = std::max(1, static_cast<int>(std::lround(depth.cols / static_cast<double>(kColumns))));
   radius_ = std::max(1, static_cast<int>(std::lround(kRadiusSteps * step_)));

@@ -2,6 +2,8 @@
 #include "posefusion/core/camera.hpp"
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 #include "posefusion/core/error.hpp"
@@ -61,6 +63,32 @@ bool PinholeCamera::operator==(const PinholeCamera& other) const {
          cx == other.cx && cy == other.cy && lens == other.lens && distortion == other.distortion;
 }
 
+bool isSameCamera(const PinholeCamera& a, const PinholeCamera& b) {
+  constexpr double kSame_px = 0.01;
+  if (a.width != b.width || a.height != b.height || a.lens != b.lens ||
+      a.distortion != b.distortion) {
+    return false;
+  }
+  for (const double u : {-0.5, a.width - 0.5}) {
+    for (const double v : {-0.5, a.height - 0.5}) {
+      const Eigen::Vector2d there = b.project(a.unproject(u, v, 1.0));
+      // Written so that what is no number differs.
+      if (!((there - Eigen::Vector2d(u, v)).norm() <= kSame_px)) return false;
+    }
+  }
+  return true;
+}
+
+std::string describe(const PinholeCamera& c) {
+  std::ostringstream out;
+  out << std::setprecision(8) << c.width << " x " << c.height << ", fx " << c.fx << " fy " << c.fy
+      << " cx " << c.cx << " cy " << c.cy;
+  return out.str();
+}
+
+// In widths of the image: 1 / (2 tan(85 degrees)).
+constexpr double kLeastFocalLength = 0.0437;
+
 void validate(const PinholeCamera& camera) {
   const auto require = [](bool good, const char* name, double value, const char* expected) {
     if (good) return;
@@ -71,6 +99,11 @@ void validate(const PinholeCamera& camera) {
   require(camera.height > 0, "height", camera.height, "more than 0 pixels");
   require(std::isfinite(camera.fx) && camera.fx > 0, "fx", camera.fx, "a focal length above 0");
   require(std::isfinite(camera.fy) && camera.fy > 0, "fy", camera.fy, "a focal length above 0");
+  // 525 that was written as 5.25, or a length in metres.
+  require(camera.fx > kLeastFocalLength * camera.width, "fx", camera.fx,
+          "a focal length in pixels, of a view of less than 170 degrees");
+  require(camera.fy > kLeastFocalLength * camera.height, "fy", camera.fy,
+          "a focal length in pixels, of a view of less than 170 degrees");
   require(camera.cx > 0 && camera.cx < camera.width, "cx", camera.cx, "a column of the image");
   require(camera.cy > 0 && camera.cy < camera.height, "cy", camera.cy, "a row of the image");
   for (const double d : camera.distortion) {

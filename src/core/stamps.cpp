@@ -121,4 +121,29 @@ std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
   return pairs;
 }
 
+std::vector<bool> risingStamps(const std::vector<std::int64_t>& stamps_ns) {
+  // Longest increasing subsequence by patience sorting (Fredman 1975), from the end, where a chain
+  // falls: ends[k] is the best end of a chain of k + 1 stamps, the greatest one.
+  std::vector<std::size_t> ends;
+  std::vector<std::size_t> after(stamps_ns.size());
+  for (std::size_t i = stamps_ns.size(); i-- > 0;) {
+    const auto place =
+        std::lower_bound(ends.begin(), ends.end(), stamps_ns[i],
+                         [&](std::size_t e, std::int64_t stamp) { return stamps_ns[e] > stamp; });
+    after[i] = place == ends.begin() ? i : *(place - 1);
+    if (place == ends.end()) {
+      ends.push_back(i);
+    } else {
+      *place = i;
+    }
+  }
+  std::vector<bool> rising(stamps_ns.size(), false);
+  if (ends.empty()) return rising;
+  for (std::size_t i = ends.back();; i = after[i]) {
+    rising[i] = true;
+    if (after[i] == i) break;
+  }
+  return rising;
+}
+
 }  // namespace pf

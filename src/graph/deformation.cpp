@@ -2,6 +2,7 @@
 #include "posefusion/graph/deformation.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "posefusion/core/se3.hpp"
 
@@ -14,22 +15,27 @@ bool isIdentityMotion(const Eigen::Isometry3d& T) {
 
 }  // namespace
 
-Deformation::Deformation(int version, std::vector<Node> nodes)
-    : version_(version), nodes_(std::move(nodes)) {
-  std::stable_sort(nodes_.begin(), nodes_.end(),
-                   [](const Node& a, const Node& b) { return a.map_frame < b.map_frame; });
-  identity_ = std::all_of(nodes_.begin(), nodes_.end(),
-                          [](const Node& n) { return isIdentityMotion(n.correction); });
+Deformation::Deformation(int version, std::vector<Node> nodes, std::optional<Join> join)
+    : version_(version), nodes_(std::move(nodes)), join_(join) {
+  std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) {
+    return std::tie(a.fragment, a.map_frame) < std::tie(b.fragment, b.map_frame);
+  });
+  identity_ = !join_ && std::all_of(nodes_.begin(), nodes_.end(),
+                                    [](const Node& n) { return isIdentityMotion(n.correction); });
 }
 
-Eigen::Isometry3d Deformation::at(std::int32_t map_frame) const {
+Eigen::Isometry3d Deformation::at(std::int32_t map_frame, int fragment) const {
   if (identity_) return Eigen::Isometry3d::Identity();
-  const auto after =
-      std::upper_bound(nodes_.begin(), nodes_.end(), map_frame,
-                       [](std::int32_t frame, const Node& n) { return frame < n.map_frame; });
-  if (after == nodes_.begin()) return after->correction;
+  const auto first = std::partition_point(nodes_.begin(), nodes_.end(),
+                                          [&](const Node& n) { return n.fragment < fragment; });
+  const auto end = std::partition_point(first, nodes_.end(),
+                                        [&](const Node& n) { return n.fragment == fragment; });
+  if (first == end) return Eigen::Isometry3d::Identity();
+  const auto after = std::upper_bound(
+      first, end, map_frame, [](std::int32_t frame, const Node& n) { return frame < n.map_frame; });
+  if (after == first) return after->correction;
   const auto before = after - 1;
-  const bool same = after == nodes_.end() || !before->leads_on || before->map_frame == map_frame ||
+  const bool same = after == end || !before->leads_on || before->map_frame == map_frame ||
                     before->correction.matrix() == after->correction.matrix();
   if (same) return before->correction;
   const double span = static_cast<double>(after->map_frame) - before->map_frame;

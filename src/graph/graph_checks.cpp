@@ -48,6 +48,11 @@ void checkGraph(const std::vector<Keyframe>& keyframes,
                                     std::to_string(keyframes[i].id));
       }
       throwUnlessUsable(keyframes[i]);
+      if (keyframes[i].fragment >= static_cast<int>(keyframes.size())) {
+        throw std::invalid_argument("keyframe " + std::to_string(i) + ": fragment is " +
+                                    std::to_string(keyframes[i].fragment) +
+                                    ", expected less than the number of keyframes");
+      }
     }
     for (const PoseConstraint& c : constraints) {
       throwUnlessBetween(c, keyframes.size());

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "pose_solver.hpp"
@@ -133,9 +135,10 @@ GraphResult PoseGraph::prove(const std::vector<Keyframe>& start,
   return result;
 }
 
-/// Whether any keyframe would move further than any loop is off.
+/// Whether any keyframe would move further than any loop is off, or into another fragment.
 bool PoseGraph::isWorthMoving(const std::vector<Keyframe>& corrected) const {
   for (std::size_t i = 0; i < corrected.size(); ++i) {
+    if (corrected[i].fragment != keyframes_[i].fragment) return true;
     const Eigen::Isometry3d step = keyframes_[i].T_map_camera.inverse() * corrected[i].T_map_camera;
     if (!isWithin(step, config_.loop_sigma_m, config_.loop_sigma_rad)) return true;
   }
@@ -158,20 +161,24 @@ Deformation PoseGraph::deformationTo(const std::vector<Keyframe>& corrected) con
   std::vector<int> order(keyframes_.size());
   std::iota(order.begin(), order.end(), 0);
   const auto at = [&](int i) -> const Keyframe& { return keyframes_[static_cast<std::size_t>(i)]; };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return at(a).map_frame < at(b).map_frame; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::tie(at(a).fragment, at(a).map_frame) < std::tie(at(b).fragment, at(b).map_frame);
+  });
   std::vector<Deformation::Node> nodes;
+  std::optional<Deformation::Join> join;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const Eigen::Isometry3d& before = at(order[k]).T_map_camera;
-    const Eigen::Isometry3d& after = corrected[static_cast<std::size_t>(order[k])].T_map_camera;
+    const Keyframe& before = at(order[k]);
+    const Keyframe& after = corrected[static_cast<std::size_t>(order[k])];
     Deformation::Node node;
-    node.map_frame = at(order[k]).map_frame;
-    if (after.matrix() != before.matrix())
-      node.correction = orthonormalised(after * before.inverse());
+    node.map_frame = before.map_frame;
+    node.fragment = before.fragment;
+    if (after.T_map_camera.matrix() != before.T_map_camera.matrix())
+      node.correction = orthonormalised(after.T_map_camera * before.T_map_camera.inverse());
     node.leads_on = k + 1 < order.size() && tracked.count({order[k], order[k + 1]}) > 0;
     nodes.push_back(node);
+    if (after.fragment != before.fragment) join = {before.fragment, after.fragment};
   }
-  return Deformation(version_, std::move(nodes));
+  return Deformation(version_, std::move(nodes), join);
 }
 
 /// Whether the poses are where the loop wants them, as far as any loop can tell.

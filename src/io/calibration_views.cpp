@@ -20,6 +20,7 @@ CalibrationViews readCalibrationViews(const std::string& map_file) {
     CalibrationView view;
     view.id = keyframe.id;
     view.T_map_camera = keyframe.T_map_camera;
+    view.fragment = keyframe.fragment;
     if (shrink >= 1) view.camera = content.camera.shrunk(shrink);
     if (view.camera.width != images.depth_mm.cols || view.camera.height != images.depth_mm.rows) {
       throw InputError(map_file + ": the depth of keyframe " + std::to_string(keyframe.id) +

@@ -52,6 +52,9 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit(Until until) {
   errno = 0;
+  if (!stream_.flush()) {  // or a write before failed, whose reason nobody has kept
+    throw InputError(path_ + ": cannot be written: " + (errno != 0 ? reason() : "disk full?"));
+  }
   stream_.close();
   // Bytes before name: a name that comes first may stand for an empty file after a power cut.
   if (!stream_ || (until == Until::disk && !sync(temporary_))) {

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/images.hpp"
 
 namespace pf {
 namespace {
@@ -40,9 +41,40 @@ bool allFinite(const std::vector<float>& values) {
 }
 bool allFinite(const std::vector<std::int32_t>&) { return true; }
 
+// What no camera makes: ten thousand kilometres away, a pixel of ten metres.
+constexpr float kFarthest_m = 1e7F, kLargestRadius_m = 10.0F;
+// Fusion removes a surfel long before.
+constexpr std::int32_t kMostViolations = 1'000'000;
+// Of a unit vector that was turned again and again in single precision.
+constexpr float kUnitTolerance = 0.01F;
+
+bool isWithin(float value, float low, float high) { return value >= low && value <= high; }
+
+/// The first value of a surfel that cannot be, and would make rendering endless or overflow.
+void checkValues(const SurfelArrays& s) {
+  const auto require = [](bool good, const char* name, double value, const char* expected) {
+    if (good) return;
+    throw InputError(std::string("the ") + name + " of a surfel is " + std::to_string(value) +
+                     ", expected " + expected);
+  };
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    for (const float place : {s.x[i], s.y[i], s.z[i]}) {
+      require(isWithin(place, -kFarthest_m, kFarthest_m), "place", place, "less than 1e7 m");
+    }
+    const float normal2 = s.nx[i] * s.nx[i] + s.ny[i] * s.ny[i] + s.nz[i] * s.nz[i];
+    require(isWithin(normal2, 1 - 2 * kUnitTolerance, 1 + 2 * kUnitTolerance), "normal's length",
+            std::sqrt(normal2), "1");
+    require(s.radius[i] > 0 && s.radius[i] <= kLargestRadius_m, "radius", s.radius[i],
+            "more than 0 and at most 10 m");
+    require(s.violations[i] >= 0 && s.violations[i] <= kMostViolations, "violations",
+            s.violations[i], "0 to 1000000");
+  }
+}
+
 void checkFrames(const SurfelArrays& s, int last_frame) {
   for (std::size_t i = 0; i < s.size(); ++i) {
-    if (s.created[i] < -1 || s.created[i] > last_frame || s.seen[i] > last_frame) {
+    if (s.created[i] < -1 || s.created[i] > last_frame || s.seen[i] < -1 ||
+        s.seen[i] > last_frame) {
       throw InputError("a surfel is of frame " + std::to_string(s.created[i]) + ", seen in " +
                        std::to_string(s.seen[i]) + ", expected at most " +
                        std::to_string(last_frame));
@@ -111,7 +143,23 @@ SurfelArrays decodeSurfels(std::string_view bytes, int last_frame) {
   });
   if (!finite) throw InputError("a surfel has a value that is not finite");
   checkFrames(surfels, last_frame);
+  checkValues(surfels);
   return surfels;
+}
+
+cv::Mat decodePng(std::string_view bytes, const cv::Size& largest) {
+  // Sizes stand before all else (PNG, 11.2.2), so that nothing has to be unpacked to know them.
+  constexpr std::size_t kWidthAt = 16, kHeader = 24;
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i)
+      value = value << 8 | static_cast<unsigned char>(bytes[i]);
+    return value;
+  };
+  const bool fits = bytes.size() > kHeader && bytes.substr(1, 3) == "PNG" &&
+                    number(kWidthAt) <= static_cast<std::uint32_t>(largest.width) &&
+                    number(kWidthAt + 4) <= static_cast<std::uint32_t>(largest.height);
+  return fits ? decodeDepth(bytes.data(), bytes.size()) : cv::Mat();
 }
 
 void decodeIntrinsics(std::string_view bytes, PinholeCamera& c) {

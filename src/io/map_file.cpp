@@ -8,7 +8,6 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/rigid_motion.hpp"
-#include "posefusion/graph/fragments.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
 
@@ -68,20 +67,24 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
 
 }  // namespace
 
+std::size_t savedSurfels(const SurfelMap& map) {
+  std::size_t count = 0;
+  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
+    count += map.isStable(s, i) ? 1 : 0;
+  });
+  return count;
+}
+
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map) {
   const RigidMotion motion(T_file_map);
-  const auto is_written = [&](const SurfelArrays& s, std::size_t i) {
-    return map.isStable(s, i) && fragmentAt(s.x[i]) == 0;
-  };
-  std::size_t count = 0;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) { count += is_written(s, i); });
+  const std::size_t count = savedSurfels(map);
   AtomicFile file(path);
   file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
                              "surfels of posefusion: map frame, metres");
   std::array<char, kVertexBytes> vertex{};
-  map.forEachSurfel([&](const SurfelArrays& surfels, std::size_t i) {
-    if (!is_written(surfels, i)) return;
+  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& surfels, std::size_t i) {
+    if (!map.isStable(surfels, i)) return;
     pack(surfels, i, motion, vertex.data());
     file.stream().write(vertex.data(), vertex.size());
   });

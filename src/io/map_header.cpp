@@ -10,8 +10,12 @@
 namespace pf {
 namespace {
 
-void checkTables(const SqliteDatabase& database) {
+void checkTables(const SqliteDatabase& database, std::int64_t version) {
   std::set<std::string> expected(kMapTables.begin(), kMapTables.end()), found;
+  if (version == kFirstMapVersion) {
+    expected.erase(kMapTables[kBlocksTable]);
+    expected.insert(kFirstBlocksTable);
+  }
   SqliteStatement rows = database.prepare("SELECT sql FROM sqlite_master");
   while (rows.step()) found.emplace(rows.blob(0));
   if (found != expected) throw InputError(database.path() + ": has other tables than a map");
@@ -25,6 +29,17 @@ void checkPages(const SqliteDatabase& database) {
 
 }  // namespace
 
+void setClosed(const SqliteDatabase& database, bool closed) {
+  const std::string name = std::string("'") + kClosedBlob + "'";
+  database.run(closed ? "INSERT OR REPLACE INTO blobs VALUES(" + name + ", x'01')"
+                      : "DELETE FROM blobs WHERE name = " + name);
+}
+
+bool isClosed(const SqliteDatabase& database) {
+  return database.integer(std::string("SELECT count(*) FROM blobs WHERE name = '") + kClosedBlob +
+                          "'") > 0;
+}
+
 void makeMapTables(const SqliteDatabase& database) {
   const SqliteDatabase& d = database;
   SqliteTransaction transaction(d);
@@ -34,18 +49,20 @@ void makeMapTables(const SqliteDatabase& database) {
   transaction.commit();
 }
 
-void checkMapFile(const SqliteDatabase& database) {
+std::int64_t checkMapFile(const SqliteDatabase& database) {
   if (database.integer("PRAGMA application_id") != kMapApplication) {
     throw InputError(database.path() + ": is no map of posefusion");
   }
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version != kMapVersion) {
+  if (version < kFirstMapVersion || version > kMapVersion) {
     throw InputError(database.path() + ": is a map of version " + std::to_string(version) +
-                     ", expected " + std::to_string(kMapVersion) +
+                     ", expected " + std::to_string(kFirstMapVersion) + " to " +
+                     std::to_string(kMapVersion) +
                      (version > kMapVersion ? ": a newer posefusion made it" : ""));
   }
-  checkTables(database);
+  checkTables(database, version);
   checkPages(database);
+  return version;
 }
 
 }  // namespace pf

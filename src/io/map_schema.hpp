@@ -8,14 +8,16 @@ namespace pf {
 
 /// "PFdb" in the header of the file, and the version of what follows.
 constexpr std::int64_t kMapApplication = 0x50466462;
-constexpr std::int64_t kMapVersion = 1;
+constexpr std::int64_t kMapVersion = 2;
+constexpr std::int64_t kFirstMapVersion = 1;  ///< the oldest that is read (see map_upgrade.hpp)
 
 /// The tables as SQLite keeps them: a file with any other is refused, so that nothing hostile can
 /// hide in a view or a trigger. Transforms are 12 doubles (3x4, row by row), covariances 36.
 constexpr std::array<const char*, 7> kMapTables = {
     "CREATE TABLE state(id INTEGER PRIMARY KEY, frame INTEGER, graph_version INTEGER, gain REAL,"
     " offset REAL, settings BLOB, width INTEGER, height INTEGER, intrinsics BLOB)",
-    "CREATE TABLE blocks(id INTEGER PRIMARY KEY, surfels BLOB, checksum INTEGER)",
+    "CREATE TABLE blocks(id INTEGER PRIMARY KEY, fragment INTEGER, surfels BLOB,"
+    " checksum INTEGER)",
     "CREATE TABLE keyframes(id INTEGER PRIMARY KEY, fragment INTEGER, stamp_ns INTEGER,"
     " map_frame INTEGER, t_map_camera BLOB)",
     "CREATE TABLE images(keyframe INTEGER PRIMARY KEY, grey BLOB, depth BLOB)",
@@ -24,5 +26,9 @@ constexpr std::array<const char*, 7> kMapTables = {
     "CREATE TABLE frames(id INTEGER PRIMARY KEY, stamp_ns INTEGER, keyframe INTEGER,"
     " t_keyframe_camera BLOB)",
     "CREATE TABLE blobs(name TEXT PRIMARY KEY, data BLOB) WITHOUT ROWID"};
+
+constexpr std::size_t kBlocksTable = 1;  ///< of those, what version 1 had otherwise:
+constexpr const char* kFirstBlocksTable =
+    "CREATE TABLE blocks(id INTEGER PRIMARY KEY, surfels BLOB, checksum INTEGER)";
 
 }  // namespace pf

@@ -8,6 +8,8 @@
 
 #include "map_encoding.hpp"
 #include "map_header.hpp"
+#include "map_schema.hpp"
+#include "map_upgrade.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/map_database.hpp"
 #include "sqlite.hpp"
@@ -21,7 +23,9 @@ SqliteDatabase openNew(const std::string& path) {
   if (fd < 0) throw InputError(path + ": cannot be made: " + std::strerror(errno));
   close(fd);
   std::error_code ignored;
-  std::filesystem::remove(path + "-wal", ignored);  // of a map of that name that was deleted
+  for (const char* companion : {"-wal", "-journal"}) {  // of a map of that name that was deleted
+    std::filesystem::remove(path + companion, ignored);
+  }
   return SqliteDatabase(path, SqliteDatabase::Access::write);
 }
 
@@ -30,6 +34,15 @@ void setUp(const SqliteDatabase& database) {
   database.run("PRAGMA locking_mode=EXCLUSIVE");
   database.run("PRAGMA journal_mode=WAL");
   database.run("PRAGMA synchronous=NORMAL");  // a power cut may cost the last write, never the file
+}
+
+/// From the log into the file, as far as the disk has room; what has none stays in the log.
+void emptyLog(const SqliteDatabase& database) {
+  try {
+    database.run("PRAGMA wal_checkpoint(PASSIVE)");
+  } catch (const InputError&) {
+    // Tried again after the next write.
+  }
 }
 
 bool same(const Keyframe& a, const Keyframe& b) {
@@ -73,12 +86,13 @@ void writeState(const SqliteDatabase& database, const MapUpdate& u) {
 
 void writeBlocks(const SqliteDatabase& database, const MapUpdate& update) {
   cutTable(database, "blocks", update.block_count);
-  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3)");
+  SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3, ?4)");
   for (const BlockRecord& block : update.blocks) {
     const std::string bytes = encode(block.surfels);
     row.bind(1, std::int64_t{block.index});
-    row.bind(2, bytes);
-    row.bind(3, checksumOf(bytes));
+    row.bind(2, std::int64_t{block.fragment});
+    row.bind(3, bytes);
+    row.bind(4, checksumOf(bytes));
     row.run();
   }
 }
@@ -157,7 +171,7 @@ std::vector<BlockRecord> changedBlocks(const SurfelMap& map, int since_frame) {
   for (std::size_t i = 0; i < map.blocks().size(); ++i) {
     const SurfelBlock& block = map.blocks()[i];
     if (block.changed < since_frame) continue;
-    records.push_back({static_cast<std::uint32_t>(i), block.surfels});
+    records.push_back({static_cast<std::uint32_t>(i), block.fragment, block.surfels});
   }
   return records;
 }
@@ -166,20 +180,25 @@ struct MapWriter::State {
   SqliteDatabase database;
   std::vector<Keyframe> keyframes;  // as written
   std::vector<PoseConstraint> constraints;
+  bool is_old = false;  // of a version before: the first write brings all that differs
 };
 
 MapWriter::MapWriter(const std::string& path, Mode mode)
     : state_(new State{mode == Mode::create ? openNew(path)
                                             : SqliteDatabase(path, SqliteDatabase::Access::write),
                        {},
-                       {}}) {
-  if (mode == Mode::extend) checkMapFile(state_->database);
+                       {},
+                       false}) {
+  if (mode == Mode::extend) state_->is_old = checkMapFile(state_->database) < kMapVersion;
   setUp(state_->database);
   if (mode == Mode::create) makeMapTables(state_->database);
+  setClosed(state_->database, false);
+  emptyLog(state_->database);
 }
 
 MapWriter::~MapWriter() {
   try {
+    setClosed(state_->database, true);
     // Into the one file, which then can be read where nothing can be written.
     state_->database.run("PRAGMA journal_mode=DELETE");
   } catch (const InputError&) {
@@ -190,6 +209,7 @@ MapWriter::~MapWriter() {
 void MapWriter::write(const MapUpdate& update) {
   const SqliteDatabase& database = state_->database;
   SqliteTransaction transaction(database);
+  if (state_->is_old) upgradeTables(database);
   writeState(database, update);
   writeBlocks(database, update);
   writeKeyframes(database, update, state_->keyframes);
@@ -198,8 +218,26 @@ void MapWriter::write(const MapUpdate& update) {
   writeFrames(database, update.frames);
   writeBlobs(database, update.blobs);
   transaction.commit();
+  state_->is_old = false;
   state_->keyframes = update.keyframes;
   state_->constraints = update.constraints;
+  emptyLog(database);
+}
+
+void renameMapFile(const std::string& from, const std::string& to) {
+  if (lookAtFiles(from).has_log) {
+    throw InputError(from + ": was not closed, its log " + logOf(from) +
+                     " cannot be written into it (disk full?): it keeps its name");
+  }
+  std::error_code error;
+  for (const std::string& there : {to, logOf(to)}) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(there, error))) {
+      throw InputError(to + ": cannot be written: " + there + " is there already; the map is " +
+                       from);
+    }
+  }
+  std::filesystem::rename(from, to, error);
+  if (error) throw InputError(to + ": cannot be written: " + error.message());
 }
 
 }  // namespace pf

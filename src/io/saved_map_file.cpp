@@ -3,7 +3,6 @@
 
 #include <cstring>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "map_encoding.hpp"
@@ -53,7 +52,7 @@ std::vector<KeyframeView> readViews(const MapReader& reader, const MapContent& c
     if (blob == content.blobs.end() || images.grey.empty()) continue;
     KeyframeView view;
     view.id = keyframe.id;
-    view.T_map_camera = keyframe.T_map_camera;
+    view.pose = {keyframe.fragment, keyframe.T_map_camera};
     view.intensity = images.grey;
     view.depth_mm = images.depth_mm;
     if (blob->second.size() != kThumbnailBytes) {
@@ -83,13 +82,6 @@ SavedMap savedMap(const MapReader& reader) {
   return map;
 }
 
-std::string textOf(const PinholeCamera& c) {
-  std::ostringstream out;
-  out << c.width << " x " << c.height << ", fx " << c.fx << " fy " << c.fy << " cx " << c.cx
-      << " cy " << c.cy;
-  return out.str();
-}
-
 }  // namespace
 
 std::optional<Eigen::Isometry3d> placeOf(const MapContent& content) {
@@ -111,9 +103,9 @@ SavedMap readSavedMap(const std::string& path) {
 
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
                          const PinholeCamera& of_frames, const std::string& whose) {
-  if (of_map == of_frames) return {};
-  return file + ": is a map of another camera (" + textOf(of_map) + ") than " + whose + " (" +
-         textOf(of_frames) + ")";
+  if (isSameCamera(of_map, of_frames)) return {};
+  return file + ": is a map of another camera (" + describe(of_map) + ") than " + whose + " (" +
+         describe(of_frames) + ")";
 }
 
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,

@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "posefusion/core/error.hpp"
@@ -46,6 +47,21 @@ int flagsOf(SqliteDatabase::Access access) {
 }
 
 }  // namespace
+
+std::string logOf(const std::string& path) { return path + "-wal"; }
+
+SqliteFiles lookAtFiles(const std::string& path) {
+  // SQLite, "Database File Format", 1.3.3: byte 18 is 2 in a file that is written by way of a log.
+  constexpr std::streamoff kWriteVersion = 18;
+  SqliteFiles files;
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(kWriteVersion);
+  files.is_closed = file.get() == 1;
+  std::error_code none;
+  const auto bytes = std::filesystem::file_size(logOf(path), none);
+  files.has_log = !none && bytes > 0;
+  return files;
+}
 
 SqliteStatement::SqliteStatement(sqlite3* database, const std::string& path, const std::string& sql)
     : database_(database), path_(path), statement_(nullptr, sqlite3_finalize) {
@@ -105,15 +121,42 @@ SqliteDatabase::SqliteDatabase(const std::string& path, Access access)
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(path + ": is a folder, expected a map file");
   }
+  // SQLite would write what the log of another file has over this one.
+  const SqliteFiles files = lookAtFiles(path);
+  if (files.is_closed && files.has_log) {
+    throw InputError(path + ": the log " + logOf(path) +
+                     " beside it is not its own, but of an earlier map of that name: move the log "
+                     "away, or see 'posefusion_map repair'");
+  }
+  open(flagsOf(access));
+  if (access == Access::read && files.has_log && !canBeRead()) openWithoutIndex();
+}
+
+void SqliteDatabase::open(int flags) {
   sqlite3* database = nullptr;
   const int code =
-      sqlite3_open_v2(path.c_str(), &database, flagsOf(access) | SQLITE_OPEN_FULLMUTEX, nullptr);
+      sqlite3_open_v2(path_.c_str(), &database, flags | SQLITE_OPEN_FULLMUTEX, nullptr);
   database_.reset(database);
   if (code != SQLITE_OK) fail(code, database, path_);
   sqlite3_extended_result_codes(database, 1);
   // The file may come from anywhere: nothing in it may run or reach beyond the tables.
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
+/// False where the index of the log, a third file, cannot be made: the disk is full.
+bool SqliteDatabase::canBeRead() const {
+  const int code =
+      sqlite3_exec(database_.get(), "PRAGMA schema_version", nullptr, nullptr, nullptr);
+  return (code & 0xFF) != SQLITE_IOERR && (code & 0xFF) != SQLITE_FULL;
+}
+
+/// The index of the log in memory, which one process alone may have; still nothing is written.
+void SqliteDatabase::openWithoutIndex() {
+  open(SQLITE_OPEN_READWRITE);
+  sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  run("PRAGMA locking_mode=EXCLUSIVE");
+  run("PRAGMA query_only=ON");
 }
 
 void SqliteDatabase::run(const std::string& sql) const {

@@ -11,6 +11,16 @@ struct sqlite3_stmt;
 
 namespace pf {
 
+/// The file beside a database that holds what was written last, until it is closed.
+std::string logOf(const std::string& path);
+
+/// What lies on the disk of a database: what SQLite itself does not tell apart.
+struct SqliteFiles {
+  bool is_closed = false;  ///< the file was closed: it has no log
+  bool has_log = false;    ///< there is one, not empty
+};
+SqliteFiles lookAtFiles(const std::string& path);
+
 /// A statement with its values (?1, ?2, ...) and the columns (from 0) of its current row.
 class SqliteStatement {
  public:
@@ -43,6 +53,7 @@ class SqliteDatabase {
  public:
   enum class Access { read, write, create };
 
+  /// Throws InputError naming the file, also where the log that lies beside it is not its own.
   SqliteDatabase(const std::string& path, Access access);
 
   SqliteStatement prepare(const std::string& sql) const { return {database_.get(), path_, sql}; }
@@ -53,6 +64,10 @@ class SqliteDatabase {
   const std::string& path() const { return path_; }
 
  private:
+  void open(int flags);
+  bool canBeRead() const;
+  void openWithoutIndex();
+
   std::string path_;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_;
 };

@@ -26,47 +26,60 @@ struct Entry {
   std::string depth;
 };
 
-/// The words of each line that is no comment. Throws naming file and line when there are fewer than
-/// `columns`.
-std::vector<std::vector<std::string>> readColumns(const fs::path& path, std::size_t columns) {
+/// A line of a list.
+struct Row {
+  std::string place;  ///< file and line
+  std::vector<std::string> words;
+
+  std::int64_t stamp(std::size_t column) const {
+    try {
+      return parseStamp(words[column]);
+    } catch (const InputError& error) {
+      throw InputError(place + ": " + error.what());
+    }
+  }
+};
+
+/// The lines that are no comment. Throws naming file and line when one has fewer than `columns`
+/// words.
+std::vector<Row> readRows(const fs::path& path, std::size_t columns) {
   std::istringstream file(readFile(path));
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Row> rows;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream words(line);
-    std::vector<std::string> row;
-    for (std::string word; words >> word;) row.push_back(word);
-    if (row.empty() || row[0][0] == '#') continue;
-    if (row.size() < columns) {
-      throw InputError(path.string() + ":" + std::to_string(number) + ": expected " +
-                       std::to_string(columns) + " columns");
+    Row row{path.string() + ":" + std::to_string(number), {}};
+    for (std::string word; words >> word;) row.words.push_back(word);
+    if (row.words.empty() || row.words[0][0] == '#') continue;
+    if (row.words.size() < columns) {
+      throw InputError(row.place + ": expected " + std::to_string(columns) + " columns");
     }
-    rows.push_back(row);
+    rows.push_back(std::move(row));
   }
   return rows;
 }
 
 std::vector<Entry> readAssociations(const fs::path& path) {
   std::vector<Entry> entries;
-  for (const auto& row : readColumns(path, 4)) {
+  for (const Row& row : readRows(path, 4)) {
     // Some tools write depth first.
-    const bool depth_first = row[1].rfind("depth", 0) == 0;
-    entries.push_back(
-        {parseStamp(row[depth_first ? 2 : 0]), row[depth_first ? 3 : 1], row[depth_first ? 1 : 3]});
+    const bool depth_first = row.words[1].rfind("depth", 0) == 0;
+    const std::size_t color = depth_first ? 2 : 0, depth = depth_first ? 0 : 2;
+    entries.push_back({row.stamp(color), row.words[color + 1], row.words[depth + 1]});
   }
   return entries;
 }
 
 std::vector<Entry> matchLists(const fs::path& folder, InputReport& report) {
   std::vector<std::int64_t> color_stamps, depth_stamps;
-  const auto color = readColumns(folder / "rgb.txt", 2);
-  const auto depth = readColumns(folder / "depth.txt", 2);
-  for (const auto& row : color) color_stamps.push_back(parseStamp(row[0]));
-  for (const auto& row : depth) depth_stamps.push_back(parseStamp(row[0]));
+  const auto color = readRows(folder / "rgb.txt", 2);
+  const auto depth = readRows(folder / "depth.txt", 2);
+  for (const Row& row : color) color_stamps.push_back(row.stamp(0));
+  for (const Row& row : depth) depth_stamps.push_back(row.stamp(0));
   std::vector<Entry> entries;
   for (const auto& [c, d] : matchStamps(color_stamps, depth_stamps, kMaxPairDifference_ns)) {
-    entries.push_back({color_stamps[c], color[c][1], depth[d][1]});
+    entries.push_back({color_stamps[c], color[c].words[1], depth[d].words[1]});
   }
   report.color_without_depth = color.size() - entries.size();
   report.depth_without_color = depth.size() - entries.size();
@@ -93,10 +106,17 @@ std::vector<Entry> readEntries(const fs::path& folder, InputReport& report) {
   return entries;
 }
 
+std::vector<std::int64_t> stampsOf(const std::vector<Entry>& entries) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const Entry& entry : entries) stamps_ns.push_back(entry.stamp_ns);
+  return stamps_ns;
+}
+
 class TumFolder : public FrameSource {
  public:
   TumFolder(const std::string& folder, const std::string& camera_file) : folder_(folder) {
     entries_ = readEntries(folder_, report_);
+    rising_ = risingStamps(stampsOf(entries_));
     readCamera(camera_file);
   }
 
@@ -109,9 +129,11 @@ class TumFolder : public FrameSource {
     out.frame.stamp_ns = entry.stamp_ns;
     out.frame.camera = camera_;
     out.frame.depth_unit_m = depth_unit_m_;
-    if (entry.stamp_ns <= latest_stamp_ns_) {
-      out.defect = "stamp " + formatStamp(entry.stamp_ns) + " is not later than " +
-                   formatStamp(latest_stamp_ns_) + " before it";
+    if (!rising_[position_ - 1]) {
+      const bool is_late = entry.stamp_ns <= latest_stamp_ns_;
+      out.defect = "stamp " + formatStamp(entry.stamp_ns) +
+                   (is_late ? " is not later than " + formatStamp(latest_stamp_ns_) + " before it"
+                            : " is later than those of the frames after it");
       return out;
     }
     latest_stamp_ns_ = entry.stamp_ns;
@@ -170,6 +192,7 @@ class TumFolder : public FrameSource {
 
   fs::path folder_;
   std::vector<Entry> entries_;
+  std::vector<bool> rising_;  ///< of each entry: its stamp is to be believed
   std::size_t position_ = 0;
   std::int64_t latest_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   PinholeCamera camera_;
@@ -186,9 +209,7 @@ std::unique_ptr<FrameSource> openTumFolder(const std::string& folder,
 
 std::vector<std::int64_t> listTumFrames(const std::string& folder) {
   InputReport report;
-  std::vector<std::int64_t> stamps_ns;
-  for (const Entry& entry : readEntries(folder, report)) stamps_ns.push_back(entry.stamp_ns);
-  return stamps_ns;
+  return stampsOf(readEntries(folder, report));
 }
 
 }  // namespace pf

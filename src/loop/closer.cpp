@@ -59,20 +59,20 @@ void LoopCloser::addKeyframe(const KeyframeView& view) {
   counts_.ferns = ferns_.size();
 }
 
-void LoopCloser::setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera) {
+void LoopCloser::setPoses(const std::vector<MapPose>& poses) {
   const auto last = keyframes_.empty() ? -1 : keyframes_.back().view.id;
-  if (static_cast<std::int64_t>(T_map_camera.size()) <= last) {
-    throw InputError("loop closer: got " + std::to_string(T_map_camera.size()) +
+  if (static_cast<std::int64_t>(poses.size()) <= last) {
+    throw InputError("loop closer: got " + std::to_string(poses.size()) +
                      " poses, expected one of keyframe " + std::to_string(last));
   }
   for (Keyframe& keyframe : keyframes_) {
-    keyframe.view.T_map_camera = T_map_camera[static_cast<std::size_t>(keyframe.view.id)];
+    keyframe.view.pose = poses[static_cast<std::size_t>(keyframe.view.id)];
   }
 }
 
-std::vector<Eigen::Isometry3d> LoopCloser::poses() const {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Keyframe& keyframe : keyframes_) poses.push_back(keyframe.view.T_map_camera);
+std::vector<MapPose> LoopCloser::poses() const {
+  std::vector<MapPose> poses;
+  for (const Keyframe& keyframe : keyframes_) poses.push_back(keyframe.view.pose);
   return poses;
 }
 
@@ -83,8 +83,9 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates() const {
   const Keyframe& last = keyframes_.back();
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < old; ++i) {
-    const Eigen::Isometry3d step =
-        keyframes_[i].view.T_map_camera.inverse() * last.view.T_map_camera;
+    const MapPose& pose = keyframes_[i].view.pose;
+    if (pose.fragment != last.view.pose.fragment) continue;
+    const Eigen::Isometry3d step = pose.T_map_camera.inverse() * last.view.pose.T_map_camera;
     const double turn = angleOf(step), shift = step.translation().norm();
     if (shift < config_.near_m && turn < kNearTurn_rad)
       found.push_back({i, shift + turn, step, true});
@@ -104,8 +105,8 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates() const {
   return found;
 }
 
-std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) {
-  std::vector<Eigen::Isometry3d> places;
+std::vector<MapPose> LoopCloser::placesLike(const KeyframeView& view) {
+  std::vector<MapPose> places;
   if (keyframes_.empty()) return places;
   const FernCode code = ferns_.encode(view.thumbnail);
   std::vector<std::pair<double, std::size_t>> alike;
@@ -117,7 +118,9 @@ std::vector<Eigen::Isometry3d> LoopCloser::placesLike(const KeyframeView& view) 
   const Features features = featuresIn(view);
   for (const auto& [dissimilarity, i] : alike) {
     const FeatureMatch match = matchFeatures(featuresOf(keyframes_[i]), features);
-    if (match.found) places.push_back(keyframes_[i].view.T_map_camera * match.T_first_second);
+    if (!match.found) continue;
+    const MapPose& pose = keyframes_[i].view.pose;
+    places.push_back({pose.fragment, pose.T_map_camera * match.T_first_second});
   }
   return places;
 }

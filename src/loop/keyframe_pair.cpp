@@ -13,12 +13,12 @@ constexpr float kFullSupport = 30.0F;  // a keyframe stands for itself
 
 }  // namespace
 
-KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id,
-                          const Eigen::Isometry3d& T_map_camera, bool nobody_in_view) {
+KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
+                          bool nobody_in_view) {
   KeyframeView view;
   view.id = id;
   view.camera = frame.camera;
-  view.T_map_camera = T_map_camera;
+  view.pose = pose;
   view.nobody_in_view = nobody_in_view;
   view.thumbnail = thumbnailOf(frame);
   frame.levels[0].intensity.convertTo(view.intensity, CV_8U);

@@ -36,12 +36,12 @@ void set(MapPoints& points, std::size_t slot, const SurfelArrays& s, std::size_t
 
 }  // namespace
 
-MapPoints thinnedPoints(const SurfelMap& map, double voxel_m) {
+MapPoints thinnedPoints(const SurfelMap& map, int fragment, double voxel_m) {
   MapPoints points;
   points.voxel_m = static_cast<float>(voxel_m);
   std::unordered_map<std::uint64_t, std::size_t> slots;
   std::vector<float> support;
-  map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+  map.forEachSurfelOf(fragment, [&](const SurfelArrays& s, std::size_t i) {
     if (!map.isStable(s, i) || map.isDead(s, i)) return;
     const auto [found, is_new] =
         slots.try_emplace(cellOf(s, i, 1.0F / points.voxel_m), support.size());

@@ -67,6 +67,7 @@ struct Layer {
 
 /// The grid and everything that is looked up in it.
 struct Grid {
+  int fragment = kFirstFragment;
   Eigen::Isometry3d T_map_grid;
   PanoramaShape shape;
   std::vector<Tilt> tilts;
@@ -138,17 +139,19 @@ void addLayers(const PlaceQuery& query, const MapPoints& near, const PlaceSearch
   for (std::size_t i = 0; i < query.beside.size(); ++i) add(beside + i, query.beside[i]);
 }
 
-Grid makeGrid(const PlaceQuery& query, const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+Grid makeGrid(const PlaceQuery& query, const MapPose& around, const Eigen::Vector3d& up,
               const PlaceSearchConfig& config) {
   Grid grid;
-  const Eigen::Vector3d up_before = around.linear().transpose() * up.normalized();
+  const Eigen::Isometry3d& T_map_around = around.T_map_camera;
+  const Eigen::Vector3d up_before = T_map_around.linear().transpose() * up.normalized();
   std::vector<Eigen::Vector3d> ups = {up_before};
   if (query.floor && std::acos(std::min(1.0, query.floor->up.dot(up_before))) > kSameTilt_rad) {
     ups.push_back(query.floor->up);
   }
   for (const SeenFloor& floor : query.beside) ups.push_back(floor.up);
-  grid.T_map_grid = around;
-  grid.T_map_grid.linear() = around.linear() * tiltOf(up_before).transpose();
+  grid.fragment = around.fragment;
+  grid.T_map_grid = T_map_around;
+  grid.T_map_grid.linear() = T_map_around.linear() * tiltOf(up_before).transpose();
   grid.shape.headings = config.headings;
   grid.shape.phases =
       std::max(1, static_cast<int>(std::lround(2.0 * M_PI / (config.headings * kBin_rad))));
@@ -179,9 +182,9 @@ std::vector<PlaceCandidate> pickBest(const Grid& grid, const std::vector<PlaceCa
   for (std::size_t k = 0; k < considered && static_cast<int>(best.size()) < most; ++k) {
     PlaceCandidate candidate = all[order[k]];
     if (candidate.score <= 0) break;
-    candidate.T_map_camera = grid.pose(order[k]);
+    candidate.pose = {grid.fragment, grid.pose(order[k])};
     const bool taken = std::any_of(best.begin(), best.end(), [&](const PlaceCandidate& b) {
-      return isNear(b.T_map_camera, candidate.T_map_camera);
+      return isNear(b.pose.T_map_camera, candidate.pose.T_map_camera);
     });
     if (!taken) best.push_back(candidate);
   }
@@ -191,7 +194,7 @@ std::vector<PlaceCandidate> pickBest(const Grid& grid, const std::vector<PlaceCa
 }  // namespace
 
 std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
-                                         const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+                                         const MapPose& around, const Eigen::Vector3d& up,
                                          const PlaceSearchConfig& config) {
   Grid grid = makeGrid(query, around, up, config);
   if (grid.shape.rows == 0) return {};

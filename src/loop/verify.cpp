@@ -159,11 +159,13 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
 }
 
 PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& frame,
-                                   const Eigen::Isometry3d& T_map_candidate) {
+                                   const MapPose& candidate) {
   RenderOptions options;
   options.age = SurfelAge::all;
+  options.fragment = candidate.fragment;
   PlaceVerdict verdict;
-  verdict.alignment.T_map_camera = T_map_candidate;
+  verdict.fragment = candidate.fragment;
+  verdict.alignment.T_map_camera = candidate.T_map_camera;
   for (int i = 0; i < kRounds; ++i) {
     const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
     renderer_.render(map, frame.camera, T, options, view_);
@@ -177,7 +179,7 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
   }
   renderer_.render(map, frame.camera, verdict.alignment.T_map_camera, options, view_);
   verdict.agreement = compareViews(frame, view_);
-  verdict.doubt = judgePlace(verdict, T_map_candidate, limits_);
+  verdict.doubt = judgePlace(verdict, candidate.T_map_camera, limits_);
   return verdict;
 }
 
@@ -186,13 +188,13 @@ PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame&
                                        std::size_t most) {
   PlaceVerdict best;
   for (std::size_t i = 0; i < std::min(most, candidates.size()); ++i) {
-    const PlaceVerdict verdict = verify(map, frame, candidates[i].T_map_camera);
+    const PlaceVerdict verdict = verify(map, frame, candidates[i].pose);
     if (i == 0) best = verdict;
     if (!verdict.accepted() || i == 0) continue;
     if (best.accepted()) {
       const Eigen::Isometry3d step =
           best.alignment.T_map_camera.inverse() * verdict.alignment.T_map_camera;
-      if (!isWithin(step, kSamePlace_m, kSamePlace_rad)) {
+      if (best.fragment != verdict.fragment || !isWithin(step, kSamePlace_m, kSamePlace_rad)) {
         best.doubt = PlaceDoubt::ambiguous;
         return best;
       }

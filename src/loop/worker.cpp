@@ -16,6 +16,15 @@ constexpr double kStandingHeight_m = 0.2, kStandingTilt_rad = 0.2;
 // Candidates that are verified; the same place may come from several searches.
 constexpr std::size_t kVerified = 6, kVerifiedElsewhere = 12;
 
+/// Those of a fragment.
+std::vector<Eigen::Isometry3d> posesIn(int fragment, const std::vector<MapPose>& poses) {
+  std::vector<Eigen::Isometry3d> own;
+  for (const MapPose& pose : poses) {
+    if (pose.fragment == fragment) own.push_back(pose.T_map_camera);
+  }
+  return own;
+}
+
 /// Up in the map, by how the camera was held at its keyframes: the last pose may be of a fall.
 Eigen::Vector3d meanUpright(const std::vector<Eigen::Isometry3d>& keyframes,
                             const Eigen::Isometry3d& T_map_last) {
@@ -82,36 +91,56 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
 std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
   // Features tell soonest, where they tell; drawing the map finds the rest.
   std::vector<PlaceCandidate> like;
-  const Eigen::Isometry3d nowhere = Eigen::Isometry3d::Identity();
-  for (const auto& T : closer_.placesLike(keyframeView(question.frame, 0, nowhere, true))) {
-    like.emplace_back().T_map_camera = T;
+  for (const MapPose& pose : closer_.placesLike(keyframeView(question.frame, 0, {}, true))) {
+    like.emplace_back().pose = pose;
   }
   const PlaceVerdict soon = verifier_.verifyBest(*question.map, question.frame, like, kVerified);
   if (!like.empty() && soon.accepted()) return soon;
-  const std::vector<Eigen::Isometry3d> keyframes = closer_.poses();
-  if (map_.lock() != question.map) {
-    map_ = question.map;
-    points_ = thinnedPoints(*question.map);
-    const Eigen::Vector3d upright = meanUpright(keyframes, question.T_map_last);
-    const auto levels = findLevels(orientedPoints(points_), upright, kUpright_rad);
-    up_ = levels ? levels->up : upright;
-  }
-  if (points_.size() == 0) return std::nullopt;
-  const PlaceQuery query = placeQuery(question.frame);
-  auto candidates = searchPlaces(points_, query, question.T_map_last, up_, {});
-  std::vector<Eigen::Isometry3d> elsewhere = question.elsewhere;
-  if (const auto T = standing(keyframes, question.T_map_last, up_)) elsewhere.push_back(*T);
-  for (const Eigen::Isometry3d& around : elsewhere) {
-    const auto more = searchPlaces(points_, query, around, up_, {});
-    candidates.insert(candidates.end(), more.begin(), more.end());
-  }
+  std::size_t most = 0;
+  const std::vector<PlaceCandidate> candidates = searchAll(question, most);
   if (candidates.empty()) return std::nullopt;
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.score > b.score; });
-  const std::size_t most = elsewhere.empty() ? kVerified : kVerifiedElsewhere;
   PlaceVerdict verdict = verifier_.verifyBest(*question.map, question.frame, candidates, most);
   if (!verdict.accepted()) return std::nullopt;
   return verdict;
+}
+
+std::vector<PlaceCandidate> LoopWorker::searchAll(const PlaceQuestion& question,
+                                                  std::size_t& most) {
+  const MapPose& last = question.last;
+  std::vector<MapPose> places = {last};
+  places.insert(places.end(), question.elsewhere.begin(), question.elsewhere.end());
+  const auto T_standing = standing(posesIn(last.fragment, closer_.poses()), last.T_map_camera,
+                                   searched(question, last).up);
+  if (T_standing) places.push_back({last.fragment, *T_standing});
+  most = places.size() == 1 ? kVerified : kVerifiedElsewhere;
+  const PlaceQuery query = placeQuery(question.frame);
+  std::vector<PlaceCandidate> candidates;
+  for (const MapPose& around : places) {
+    const Searched& in = searched(question, around);
+    if (in.points.size() == 0) continue;
+    const auto more = searchPlaces(in.points, query, around, in.up, {});
+    candidates.insert(candidates.end(), more.begin(), more.end());
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+  return candidates;
+}
+
+const LoopWorker::Searched& LoopWorker::searched(const PlaceQuestion& question,
+                                                 const MapPose& around) {
+  if (map_.lock() != question.map) {
+    map_ = question.map;
+    searched_.clear();
+  }
+  const auto [found, is_new] = searched_.try_emplace(around.fragment);
+  Searched& s = found->second;
+  if (!is_new) return s;
+  s.points = thinnedPoints(*question.map, around.fragment);
+  const Eigen::Vector3d upright =
+      meanUpright(posesIn(around.fragment, closer_.poses()), around.T_map_camera);
+  const auto levels = findLevels(orientedPoints(s.points), upright, kUpright_rad);
+  s.up = levels ? levels->up : upright;
+  return s;
 }
 
 }  // namespace pf

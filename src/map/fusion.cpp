@@ -119,7 +119,7 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
   update(frame, T_map_camera, options, map, counts);
   counts.removed = clean(map);
   surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence, s.fresh);
-  counts.inserted = map.add(s.fresh);
+  counts.inserted = map.add(s.fresh, options.fragment);
   return counts;
 }
 
@@ -129,7 +129,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   findFreeSpace(frame, s.seen_m, s.evidence.free_m);
   s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
   s.evidence.known_behind.assign(frame.depth_m.size());
-  s.visible = visibleBlocks(map, frame.camera, T_map_camera,
+  s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
                             reachOf(s.seen_m, s.people_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);
   const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);

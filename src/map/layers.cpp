@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "posefusion/core/normal_line.hpp"
@@ -16,20 +17,26 @@ namespace {
 constexpr float kSameFacing = 0.8F;  // cosine
 constexpr std::size_t kGrain = 4096;
 
-/// The stable surfels of a map, and where each is among all.
+/// The stable surfels of a fragment, and where each is among all of the map.
 struct StableSurfels {
-  explicit StableSurfels(const SurfelMap& map) {
+  StableSurfels(const SurfelMap& map, int fragment) {
     std::size_t index = 0;
-    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-      const std::size_t here = index++;
-      if (!map.isStable(s, i)) return;
-      indices.push_back(here);
+    for (const SurfelBlock& block : map.blocks()) {
+      if (block.fragment == fragment) add(map, block.surfels, index);
+      index += block.surfels.size();
+    }
+  }
+
+  void add(const SurfelMap& map, const SurfelArrays& s, std::size_t first) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      if (!map.isStable(s, i)) continue;
+      indices.push_back(first + i);
       positions.emplace_back(s.x[i], s.y[i], s.z[i]);
       normals.emplace_back(s.nx[i], s.ny[i], s.nz[i]);
       radii.push_back(s.radius[i]);
       created.push_back(s.created[i]);
       largest_radius = std::max(largest_radius, s.radius[i]);
-    });
+    }
   }
 
   /// Whether the line through surfel i along its normal meets the disc of k within the distances of
@@ -49,12 +56,10 @@ struct StableSurfels {
   float largest_radius = 0;
 };
 
-}  // namespace
-
-std::size_t removeYoungerLayers(SurfelMap& map) {
-  const StableSurfels stable(map);
+/// Marks those of a fragment that are to go.
+void findYoungerLayers(const SurfelMap& map, int fragment, std::vector<char>& doomed) {
+  const StableSurfels stable(map, fragment);
   const PointGrid grid(stable.positions);
-  std::vector<char> doomed(map.size(), 0);
   parallelFor(stable.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       char& gone = doomed[stable.indices[i]];
@@ -63,6 +68,15 @@ std::size_t removeYoungerLayers(SurfelMap& map) {
       });
     }
   });
+}
+
+}  // namespace
+
+std::size_t removeYoungerLayers(SurfelMap& map) {
+  std::set<int> fragments;
+  for (const SurfelBlock& block : map.blocks()) fragments.insert(block.fragment);
+  std::vector<char> doomed(map.size(), 0);
+  for (const int fragment : fragments) findYoungerLayers(map, fragment, doomed);
   std::size_t index = 0;  // surfels come in the order of forEachSurfel()
   return map.removeIf([&](const SurfelArrays&, std::size_t) { return doomed[index++] != 0; });
 }

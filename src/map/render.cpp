@@ -144,7 +144,8 @@ SurfelRenderer::~SurfelRenderer() = default;
 void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
                             const Eigen::Isometry3d& T_map_camera, const RenderOptions& options,
                             ModelView& view) {
-  const auto ranges = rangesOf(map, visibleBlocks(map, camera, T_map_camera, options.max_depth_m));
+  const auto ranges = rangesOf(
+      map, visibleBlocks(map, camera, {options.fragment, T_map_camera}, options.max_depth_m));
   const DiscMaker maker(map, options, camera, T_map_camera);
   const Rays& rays = maker.rays();
   Buffers& b = *buffers_;
@@ -160,6 +161,7 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   });
   b.chosen.combine();
   prepare(camera, T_map_camera, options.with_color, view);
+  view.fragment = options.fragment;
   parallelFor(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       for (int u = 0; u < camera.width; ++u) {

@@ -13,14 +13,12 @@ namespace {
 // in vain, and no single step moves much.
 constexpr std::size_t kChunk = 128;
 constexpr std::size_t kGrowthShare = 8;
-// Cells are numbered with 21 bits an axis: a kilometre each way at any sensible side.
-constexpr int kCellBits = 21;
-constexpr float kCellLimit = static_cast<float>(1 << (kCellBits - 1)) - 1.0F;
+// What an integer can count; at any sensible side farther than floats tell one block from the next.
+constexpr float kCellLimit = 1e9F;
 
-std::uint64_t cellOf(float x, float side) {
+std::int32_t cellOf(float x, float side) {
   const float cell = std::floor(x / side);
-  const float held = std::min(kCellLimit, std::max(-kCellLimit, cell));
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(held) + (1 << (kCellBits - 1)));
+  return static_cast<std::int32_t>(std::min(kCellLimit, std::max(-kCellLimit, cell)));
 }
 
 std::size_t roundedUp(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
@@ -50,24 +48,38 @@ std::size_t SurfelMap::stableCount() const {
   return count;
 }
 
+std::vector<FragmentSurfels> SurfelMap::parts() const {
+  std::vector<FragmentSurfels> parts;
+  for (const SurfelBlock& block : blocks_) {
+    if (parts.empty() || parts.back().fragment != block.fragment) {
+      parts.push_back({block.fragment, {}});
+    }
+    parts.back().surfels.append(block.surfels);
+  }
+  return parts;
+}
+
 SurfelArrays SurfelMap::collect() const {
   SurfelArrays all;
-  for (const SurfelBlock& block : blocks_) {
-    all.forEachArray(block.surfels, [](auto& array, const auto& part) {
-      array.insert(array.end(), part.begin(), part.end());
-    });
-  }
+  for (const SurfelBlock& block : blocks_) all.append(block.surfels);
   return all;
 }
 
-std::uint64_t SurfelMap::cellAt(float x, float y, float z) const {
-  return (cellOf(x, block_side_m_) << (2 * kCellBits)) | (cellOf(y, block_side_m_) << kCellBits) |
-         cellOf(z, block_side_m_);
+std::size_t SurfelMap::CellHash::operator()(const Cell& cell) const {
+  std::uint64_t hash = 0;
+  for (const std::int32_t number : {cell.fragment, cell.x, cell.y, cell.z}) {
+    hash = (hash ^ static_cast<std::uint32_t>(number)) * 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 32;
+  }
+  return static_cast<std::size_t>(hash);
 }
 
-std::uint32_t SurfelMap::blockAt(float x, float y, float z) {
-  const std::uint64_t key = cellAt(x, y, z);
-  const auto found = index_.find(key);
+SurfelMap::Cell SurfelMap::cellAt(int fragment, float x, float y, float z) const {
+  return {fragment, cellOf(x, block_side_m_), cellOf(y, block_side_m_), cellOf(z, block_side_m_)};
+}
+
+std::uint32_t SurfelMap::blockAt(const Cell& cell) {
+  const auto found = index_.find(cell);
   if (found != index_.end()) return found->second;
   const auto limit = static_cast<std::size_t>(config_.memory_limit_mb * 1024.0 * 1024.0);
   if (memory_ + sizeof(SurfelBlock) + kChunk * SurfelArrays::bytesPerSurfel() > limit) {
@@ -75,8 +87,8 @@ std::uint32_t SurfelMap::blockAt(float x, float y, float z) {
   }
   memory_ += sizeof(SurfelBlock);
   const auto block = static_cast<std::uint32_t>(blocks_.size());
-  blocks_.emplace_back();
-  index_.emplace(key, block);
+  blocks_.emplace_back().fragment = cell.fragment;
+  index_.emplace(cell, block);
   return block;
 }
 
@@ -94,7 +106,7 @@ std::size_t SurfelMap::makeRoom(SurfelBlock& block, std::size_t count) {
   return std::min(count, reserved - size);
 }
 
-std::size_t SurfelMap::add(const SurfelArrays& s) {
+std::size_t SurfelMap::add(const SurfelArrays& s, int fragment) {
   // Bring the surfels of each block together, keeping their order.
   struct Group {
     std::uint32_t block;
@@ -107,7 +119,7 @@ std::size_t SurfelMap::add(const SurfelArrays& s) {
   for (std::size_t i = 0; i < s.size(); ++i) {
     if (!std::isfinite(s.x[i] + s.y[i] + s.z[i])) continue;
     ++finite;
-    const std::uint32_t block = blockAt(s.x[i], s.y[i], s.z[i]);
+    const std::uint32_t block = blockAt(cellAt(fragment, s.x[i], s.y[i], s.z[i]));
     if (block == kNoBlock) continue;
     if (block != last_block) {
       group = group_of.emplace(block, groups.size()).first->second;

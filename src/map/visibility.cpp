@@ -10,15 +10,18 @@ namespace {
 
 // Outside the picture by so much (pixels) still counts as in view: fusion rounds to whole pixels.
 constexpr double kMargin_px = 1.0;
+// Those who go by the list turn surfels into the camera's frame in floats, which are off by less up
+// to kilometres from the origin.
+constexpr double kRounding_m = 1e-3;
 
 /// A half space in the map frame: inside where normal . x + offset >= 0 (m).
 struct HalfSpace {
-  Eigen::Vector3f normal;
-  float offset;
+  Eigen::Vector3d normal;
+  double offset;
 
   /// False when all of the box is farther than `margin` outside.
-  bool touches(const Eigen::AlignedBox3f& box, float margin) const {
-    const Eigen::Vector3f inmost =
+  bool touches(const Eigen::AlignedBox3d& box, double margin) const {
+    const Eigen::Vector3d inmost =
         (normal.array() >= 0).select(box.max().array(), box.min().array());
     return normal.dot(inmost) + offset >= -margin;
   }
@@ -39,28 +42,27 @@ std::array<HalfSpace, 6> frustumOf(const PinholeCamera& c, const Eigen::Isometry
   std::array<HalfSpace, 6> sides;
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const Eigen::Vector3d n = T_map_camera.linear() * normals[k].normalized();
-    sides[k].normal = n.cast<float>();
-    sides[k].offset = static_cast<float>(-n.dot(T_map_camera.translation()));
+    sides[k].normal = n;
+    sides[k].offset = -n.dot(T_map_camera.translation());
   }
-  sides[5].offset = max_depth_m > 0 ? sides[5].offset + static_cast<float>(max_depth_m)
-                                    : std::numeric_limits<float>::infinity();
+  sides[5].offset =
+      max_depth_m > 0 ? sides[5].offset + max_depth_m : std::numeric_limits<double>::infinity();
   return sides;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> visibleBlocks(const SurfelMap& map, const PinholeCamera& camera,
-                                         const Eigen::Isometry3d& T_map_camera,
-                                         double max_depth_m) {
-  const auto sides = frustumOf(camera, T_map_camera, max_depth_m);
+                                         const MapPose& pose, double max_depth_m) {
+  const auto sides = frustumOf(camera, pose.T_map_camera, max_depth_m);
   std::vector<std::uint32_t> visible;
   for (std::uint32_t i = 0; i < map.blocks().size(); ++i) {
     const SurfelBlock& block = map.blocks()[i];
-    if (block.surfels.size() == 0) continue;
-    // Floats this far from the origin are exact to less than a tenth of a millimetre.
-    const float margin = block.largest_radius + 1e-3F;
+    if (block.fragment != pose.fragment || block.surfels.size() == 0) continue;
+    const Eigen::AlignedBox3d bounds = block.bounds.cast<double>();
+    const double margin = block.largest_radius + kRounding_m;
     if (std::all_of(sides.begin(), sides.end(),
-                    [&](const HalfSpace& s) { return s.touches(block.bounds, margin); })) {
+                    [&](const HalfSpace& s) { return s.touches(bounds, margin); })) {
       visible.push_back(i);
     }
   }

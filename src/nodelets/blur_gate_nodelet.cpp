@@ -2,11 +2,14 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <boost/make_shared.hpp>
+#include <chrono>
 #include <memory>
+#include <string>
 
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
+#include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/image_subscriber.hpp"
 #include "posefusion_ros/input_pairing.hpp"
@@ -43,7 +46,7 @@ class BlurGateNodelet : public ChainNodelet {
       reject(header, TrackingStatusMsg::BAD_INPUT, reason);
     };
     handlers.jump = [this](double seconds) {
-      NODELET_WARN("stamps went back by %.3f s: the chain begins anew", seconds);
+      NODELET_WARN("stamps went back by %.3f s", seconds);
       gate_->reset();
     };
     pairing_ = std::make_unique<InputPairing>(input_.pairing, std::move(handlers));
@@ -87,6 +90,7 @@ class BlurGateNodelet : public ChainNodelet {
   void onSet(const InputPairing::Set& set) {
     sets_since_look_ = true;
     const std_msgs::Header& header = set.color.header;
+    clock_defect_ = clockDefect(header.stamp, ros::Time::now(), ros::Time::isSimTime());
     const std::string color_frame = plainFrame(header.frame_id);
     const std::string depth_frame = plainFrame(set.depth.header.frame_id);
     if (input_.require_same_frame && color_frame != depth_frame) {
@@ -146,11 +150,21 @@ class BlurGateNodelet : public ChainNodelet {
   }
 
   void tellMissing(const ros::WallTimerEvent&) {
-    if (!sets_since_look_) {
+    const auto now = std::chrono::steady_clock::now();
+    std::string topics;
+    if (!sets_since_look_) topics = topicText(color_) + topicText(depth_) + infoText();
+    if (missing_pause_.isDue(now, topics)) {
       NODELET_WARN(
           "no complete frame for %.0f s. %s", missing_after_s_,
           pairing_->describeArrivals({topicText(color_), topicText(depth_), infoText()}).c_str());
     }
+    if (!sets_since_look_) {
+      const ros::Time time = ros::Time::now();
+      clock_defect_ = time.isZero() ? clockDefect(time, time, ros::Time::isSimTime()) : "";
+    }
+    // Not by NODELET_WARN_THROTTLE: it goes by ROS time.
+    const std::string clock_case = clock_defect_.empty() ? "" : "defect";
+    if (clock_pause_.isDue(now, clock_case)) NODELET_WARN("%s", clock_defect_.c_str());
     sets_since_look_ = false;
   }
 
@@ -176,6 +190,8 @@ class BlurGateNodelet : public ChainNodelet {
   std::string origin_;  ///< of the frames, for messages
   double missing_after_s_ = 5.0;
   bool sets_since_look_ = false;
+  std::string clock_defect_;  ///< of the last frame
+  GrowingPause missing_pause_, clock_pause_;
   pf::Rectifier rectifier_;
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;

@@ -3,21 +3,23 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "fusion_input.hpp"
 #include "fusion_services.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/closer_link.hpp"
 #include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/end_signals.hpp"
 #include "posefusion_ros/map_output.hpp"
-#include "posefusion_ros/map_query.hpp"
 #include "posefusion_ros/mapping_session.hpp"
 #include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
-#include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/status_output.hpp"
 #include "posefusion_ros/worker.hpp"
+#include "transform_hold.hpp"
 
 namespace posefusion_ros {
 
@@ -31,14 +33,14 @@ class FusionNodelet : public ChainNodelet {
  public:
   ~FusionNodelet() override {
     stopWaiting();
+    if (hold_) hold_->stop();
     if (closer_) closer_->hurry(true);
     rejected_.shutdown();
     input_.reset();
     if (services_) services_->shutdown();
-    settings_.reset();
-    map_query_.reset();
     if (map_output_) worker_->post([this] { map_output_->close(); }).get();
     worker_.reset();
+    status_.clearText();                      // it is sent while the map is saved
     if (!session_) return;                    // start() may have failed anywhere
     if (is_lossless_) closer_->hurry(false);  // what it still has to say counts
     const std::string said = session_->finish();
@@ -62,6 +64,7 @@ class FusionNodelet : public ChainNodelet {
     const double patience_s = parameters.number("closer_timeout_s", 20.0, {0.01, 3600.0});
     auto closer = std::make_unique<CloserLink>(handle, patience_s);
     report(parameters);
+    endWellOnSignals();
     CloserLink* const link = closer.get();
     session_ = std::make_unique<MappingSession>(settings, std::move(closer));
     closer_ = link;
@@ -73,6 +76,11 @@ class FusionNodelet : public ChainNodelet {
     map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
                                               [this] { worker_->post([this] { showMap(); }); });
     offerServices({settings.config.tracking, poses.publishing});
+    if (!is_lossless_) {
+      hold_ = std::make_unique<TransformHold>(getMTNodeHandle(), [this](const ros::Time& now) {
+        worker_->post([this, now] { pose_output_->hold(now); });
+      });
+    }
     rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
     input_ = std::make_unique<FusionInput>(handle, [this](const Set& set) { onSet(set); });
     // A chain that is lossless waits for the closer too, so that the first answer is not missed.
@@ -83,27 +91,25 @@ class FusionNodelet : public ChainNodelet {
           return input_->isConnected() &&
                  (!needs_closer || closer_->isThere() || ros::WallTime::now() > end);
         },
-        [this] { advertiseStatus(); });
+        [this] { status_.advertise(getNodeHandle()); });
   }
 
   void offerServices(const FusionSettings& initial) {
-    // Services wait for the worker: in a queue of their own.
-    ros::NodeHandle& handle = getMTPrivateNodeHandle();
-    const auto post = [this](std::function<void()> task) { return worker_->post(std::move(task)); };
-    services_ =
-        std::make_unique<FusionServices>(handle, *session_, post, [this] { showAnother(); });
-    map_query_ = std::make_unique<MapQuery>(handle, post, [this](std::size_t max_points) {
+    FusionServices::Actions actions;
+    actions.post = [this](std::function<void()> task) { return worker_->post(std::move(task)); };
+    actions.shows_another = [this] { showAnother(); };
+    actions.draw = [this](std::size_t max_points) {
       return map_output_->cloud(session_->mapper().map(), last_, pose_output_->mapFromStart(),
                                 max_points);
-    });
-    const auto apply = [this](const FusionSettings& settings) {
+    };
+    actions.apply = [this](const FusionSettings& settings) {
       session_->set(settings.tracking);
       pose_output_->set(settings.publishing);
       map_output_->set(settings.publishing);
     };
-    settings_ = std::make_unique<SettingsServer<FusionSettings>>(
-        handle, initial,
-        [post, apply](const FusionSettings& settings) { post([&] { apply(settings); }).get(); });
+    // Services wait for the worker: in a queue of their own.
+    services_ = std::make_unique<FusionServices>(getMTPrivateNodeHandle(), *session_,
+                                                 std::move(actions), initial);
   }
 
   /// To someone who has just begun to listen.
@@ -114,11 +120,6 @@ class FusionNodelet : public ChainNodelet {
 
   void publishMap(const ros::Time& stamp) {
     map_output_->publishSurfels(session_->mapper().map(), stamp, pose_output_->mapFromStart());
-  }
-
-  void advertiseStatus() {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    status_publisher_ = getNodeHandle().advertise<TrackingStatusMsg>(topics::kStatus, 1000);
   }
 
   void onSet(const Set& set) {
@@ -138,7 +139,7 @@ class FusionNodelet : public ChainNodelet {
   void process(const Set& set) {
     const std_msgs::Header& header = FusionInput::headerOf(set);
     guarded(header, [&] {
-      if (header.stamp < last_) startAnew();
+      if (header.stamp < last_) onTimeBack();
       if (services_->isPaused()) {
         skip(header.stamp, TrackingStatusMsg::PAUSED, "paused");
       } else {
@@ -196,17 +197,23 @@ class FusionNodelet : public ChainNodelet {
     message.outcome = outcome;
     message.reason = reason;
     message.unanswered = session_->loops().unanswered();
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    if (status_publisher_) status_publisher_.publish(message);
+    status_.publish(message);
+    if (hold_) hold_->heard(stamp);
+    if (!status.located) pose_output_->hold(stamp);
   }
 
-  /// The bag is played again: what there was is kept in a folder of its own.
-  void startAnew() {
-    std::string lost;
-    const std::string said = session_->startAnew(lost);
+  /// A bag that is played again begins another map, a clock that was put back does not.
+  void onTimeBack() {
+    const bool is_replayed = ros::Time::isSimTime();
+    std::string unsaved;
+    const std::string said =
+        is_replayed ? session_->startAnew(unsaved) : session_->restartClock(unsaved);
     if (!said.empty()) NODELET_INFO("%s", said.c_str());
-    if (!lost.empty()) NODELET_ERROR("the map before the jump is lost: %s", lost.c_str());
-    beginOutput();
+    if (!unsaved.empty()) NODELET_ERROR("the map before the jump %s", unsaved.c_str());
+    if (is_replayed) return beginOutput();
+    NODELET_WARN("the clock was put back: the map goes on, the camera is looked for in it");
+    pose_output_->restartClock();
+    map_output_->reset();
   }
 
   void beginPoses() {
@@ -236,14 +243,12 @@ class FusionNodelet : public ChainNodelet {
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
   std::unique_ptr<PoseOutput> pose_output_;
-  std::mutex status_mutex_;  // guards status_publisher_, which is advertised late
-  ros::Publisher status_publisher_;
+  StatusOutput status_;
+  std::unique_ptr<TransformHold> hold_;
   std::unique_ptr<Worker<Set>> worker_;
   std::unique_ptr<FusionInput> input_;
   ros::Subscriber rejected_;
   std::unique_ptr<FusionServices> services_;
-  std::unique_ptr<SettingsServer<FusionSettings>> settings_;
-  std::unique_ptr<MapQuery> map_query_;
 };
 
 }  // namespace posefusion_ros

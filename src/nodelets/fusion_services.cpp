@@ -10,19 +10,27 @@
 
 namespace posefusion_ros {
 
-FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session, Post post,
-                               std::function<void()> shows_another)
-    : session_(session), post_(std::move(post)), shows_another_(std::move(shows_another)) {
+FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session, Actions actions,
+                               const FusionSettings& initial)
+    : session_(session), actions_(std::move(actions)) {
   services_ = {handle.advertiseService("save_map", &FusionServices::onSave, this),
                handle.advertiseService("load_map", &FusionServices::onLoad, this),
                handle.advertiseService("set_mode", &FusionServices::onSetMode, this),
                handle.advertiseService("pause", &FusionServices::onPause, this),
                handle.advertiseService("resume", &FusionServices::onResume, this),
                handle.advertiseService("reset", &FusionServices::onReset, this)};
+  map_query_ = std::make_unique<MapQuery>(handle, actions_.post, actions_.draw);
+  settings_ = std::make_unique<SettingsServer<FusionSettings>>(
+      handle, initial,
+      [post = actions_.post, apply = actions_.apply](const FusionSettings& changed) {
+        post([&] { apply(changed); }).get();
+      });
 }
 
 void FusionServices::shutdown() {
   for (ros::ServiceServer& service : services_) service.shutdown();
+  settings_.reset();
+  map_query_.reset();
 }
 
 bool FusionServices::onSave(Trigger::Request& /*request*/, Trigger::Response& response) {
@@ -32,7 +40,7 @@ bool FusionServices::onSave(Trigger::Request& /*request*/, Trigger::Response& re
 bool FusionServices::onReset(Trigger::Request& /*request*/, Trigger::Response& response) {
   const auto task = [this] {
     std::string said = session_.reset();
-    shows_another_();
+    actions_.shows_another();
     return said;
   };
   return answer(task, response);
@@ -51,7 +59,7 @@ bool FusionServices::onLoad(LoadMap::Request& request, LoadMap::Response& respon
   }
   const auto task = [&] {
     std::string said = session_.load(file, std::move(map));
-    shows_another_();
+    actions_.shows_another();
     return said;
   };
   return answer(task, response);
@@ -60,8 +68,11 @@ bool FusionServices::onLoad(LoadMap::Request& request, LoadMap::Response& respon
 bool FusionServices::onSetMode(SetMode::Request& request, SetMode::Response& response) {
   const auto task = [&] {
     if (request.mode == "mapping") return session_.setUse(pf::MapUse::extend);
-    if (request.mode == "localisation") return session_.setUse(pf::MapUse::localize_only);
-    throw pf::InputError("mode '" + request.mode + "', expected mapping or localisation");
+    for (const char* name : {"localisation", "localization", "localize_only"}) {
+      if (request.mode == name) return session_.setUse(pf::MapUse::localize_only);
+    }
+    throw pf::InputError("mode '" + request.mode +
+                         "', expected mapping or localisation (localization, localize_only)");
   };
   return answer(task, response);
 }
@@ -84,7 +95,7 @@ bool FusionServices::onResume(Trigger::Request& /*request*/, Trigger::Response& 
 
 template <typename Response>
 bool FusionServices::answer(const std::function<std::string()>& task, Response& response) {
-  answerTrigger(post_, task, response);
+  answerTrigger(actions_.post, task, response);
   if (response.success) {
     ROS_INFO("%s", response.message.c_str());
   } else {

@@ -8,24 +8,31 @@
 
 #include <atomic>
 #include <functional>
-#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "posefusion_ros/map_query.hpp"
 #include "posefusion_ros/mapping_session.hpp"
+#include "posefusion_ros/running_settings.hpp"
+#include "posefusion_ros/settings_server.hpp"
 
 namespace posefusion_ros {
 
-/// What is asked of fusion by services, carried out between two frames.
+/// What is asked of fusion by services and by dynamic_reconfigure, carried out between two frames.
 class FusionServices {
  public:
-  /// Runs a task between two frames.
-  using Post = std::function<std::future<void>(std::function<void()>)>;
+  struct Actions {
+    MapQuery::Post post;                  ///< runs a task between two frames
+    std::function<void()> shows_another;  ///< the map was exchanged for another
+    MapQuery::Draw draw;
+    std::function<void(const FusionSettings&)> apply;
+  };
 
-  /// `handle`: private, of a queue that no work waits for. `shows_another`: called between two
-  /// frames after the map was exchanged for another.
-  FusionServices(ros::NodeHandle& handle, MappingSession& session, Post post,
-                 std::function<void()> shows_another);
+  /// `handle`: private, of a queue that no work waits for. All but `post` are called between two
+  /// frames.
+  FusionServices(ros::NodeHandle& handle, MappingSession& session, Actions actions,
+                 const FusionSettings& initial);
 
   /// No more calls.
   void shutdown();
@@ -49,10 +56,11 @@ class FusionServices {
   bool answer(const std::function<std::string()>& task, Response& response);
 
   MappingSession& session_;
-  Post post_;
-  std::function<void()> shows_another_;
+  Actions actions_;
   std::atomic<bool> is_paused_{false};
   std::vector<ros::ServiceServer> services_;
+  std::unique_ptr<MapQuery> map_query_;
+  std::unique_ptr<SettingsServer<FusionSettings>> settings_;
 };
 
 }  // namespace posefusion_ros

@@ -26,6 +26,7 @@ using sensor_msgs::CameraInfo;
 using sensor_msgs::Image;
 
 constexpr std::chrono::milliseconds kViewPatience(5000);
+constexpr double kLastMessage_s = 0.2;
 
 /// Takes people out of the depth. Lossless, each frame is compared with the map as it was after the
 /// frame before it; live, with the newest view of the map.
@@ -34,6 +35,12 @@ class SegmenterNodelet : public ChainNodelet {
   ~SegmenterNodelet() override {
     stopWaiting();
     background_.stop();
+    for (ros::Subscriber* subscriber : {&view_, &info_, &depth_, &color_, &people_}) {
+      subscriber->shutdown();
+    }
+    if (worker_) worker_->stop();
+    // What is shown of the last frame would stay for good; it takes a moment to be sent.
+    if (clearMarkers()) ros::WallDuration(kLastMessage_s).sleep();
   }
 
  private:
@@ -85,7 +92,21 @@ class SegmenterNodelet : public ChainNodelet {
     mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
   }
 
-  void onView(const ModelViewMsg::ConstPtr& view) { background_.set(view); }
+  void onView(const ModelViewMsg::ConstPtr& view) {
+    background_.set(view);
+    if (view->reset != 0) clearMarkers();
+  }
+
+  /// Whether somebody is told.
+  bool clearMarkers() {
+    const std::lock_guard<std::mutex> lock(publisher_mutex_);
+    if (!marker_publisher_ || marker_publisher_.getNumSubscribers() == 0) return false;
+    std_msgs::Header header;
+    header.frame_id = shown_frame_;
+    marker_publisher_.publish(noMarkers(header));
+    return true;
+  }
+
   void onInfo(const sensor_msgs::CameraInfoConstPtr& info) { matcher_->add<0>(info); }
   void onDepth(const sensor_msgs::ImageConstPtr& image) { matcher_->add<1>(image); }
   void onColor(const sensor_msgs::ImageConstPtr& image) { matcher_->add<2>(image); }
@@ -154,6 +175,7 @@ class SegmenterNodelet : public ChainNodelet {
     used_publisher_.publish(boost::make_shared<const PeopleMsg>(toMessage(result.people, header)));
     if (marker_publisher_.getNumSubscribers() > 0) {
       marker_publisher_.publish(toMarkers(result.people, frame, header));
+      shown_frame_ = header.frame_id;
     }
     if (picture_publisher_.getNumSubscribers() > 0) {
       picture_publisher_.publish(
@@ -183,6 +205,7 @@ class SegmenterNodelet : public ChainNodelet {
   ros::Time last_;  // the frame before; zero at the start
   Background background_;
   std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
+  std::string shown_frame_;     // of the markers
   ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
       flow_publisher_, in_map_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;

@@ -44,6 +44,8 @@ struct Stream {
   std::int64_t latest_ns = std::numeric_limits<std::int64_t>::min();
   std::size_t going_back = 0;
 
+  bool isFirst() const { return latest_ns == std::numeric_limits<std::int64_t>::min(); }
+
   bool accept(std::int64_t stamp_ns) {
     if (stamp_ns <= latest_ns) {
       ++going_back;
@@ -53,6 +55,11 @@ struct Stream {
     return true;
   }
 };
+
+// A stamp so far ahead of the one before is compared with those after it: it may be of the future.
+// As live, see `time_jump_threshold_s`.
+constexpr std::int64_t kJump_ns = 1'000'000'000;
+constexpr int kCompared = 5;
 
 class BagSource : public pf::FrameSource {
  public:
@@ -133,16 +140,32 @@ class BagSource : public pf::FrameSource {
     ++position_;
     if (!image) return std::nullopt;
     Stream& stream = is_color ? color_ : depth_;
+    const bool jumps = !stream.isFirst() && image->stamp_ns - stream.latest_ns > kJump_ns;
+    const bool is_stray = jumps && isAheadOfNext(message.getTopic(), *image, stream.latest_ns);
     const std::int64_t latest_ns = stream.latest_ns;
-    if (stream.accept(image->stamp_ns)) {
+    if (!is_stray && stream.accept(image->stamp_ns)) {
       is_color ? pairer_.addFirst(std::move(*image)) : pairer_.addSecond(std::move(*image));
       return std::nullopt;
     }
     if (!is_color) return std::nullopt;
     SourceFrame out = emptyFrame(image->stamp_ns);
-    out.defect = "stamp " + pf::formatStamp(image->stamp_ns) + " is not later than " +
-                 pf::formatStamp(latest_ns) + " before it";
+    out.defect = "stamp " + pf::formatStamp(image->stamp_ns) +
+                 (is_stray ? " is later than those of the frames after it"
+                           : " is not later than " + pf::formatStamp(latest_ns) + " before it");
     return out;
+  }
+
+  /// Whether the messages that follow on the topic go on from the one before this image.
+  bool isAheadOfNext(const std::string& topic, const InputImage& image, std::int64_t before_ns) {
+    int compared = 0;
+    for (auto next = position_; next != view_.end() && compared < kCompared; ++next) {
+      if (next->getTopic() != topic) continue;
+      ++compared;
+      const auto following = readImage(*next, topic == topics_.depth ? depth_offset_s_ : 0.0);
+      if (!following) continue;
+      if (following->stamp_ns > before_ns && following->stamp_ns < image.stamp_ns) return true;
+    }
+    return false;
   }
 
   SourceFrame emptyFrame(std::int64_t stamp_ns) const {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/names.hpp"
 
 namespace posefusion_ros {
@@ -56,12 +57,16 @@ void ChainNodelet::startDiagnostics() {
 }
 
 void ChainNodelet::passed(const ros::Time& stamp) {
-  watch_.passed(std::chrono::steady_clock::now(), (ros::Time::now() - stamp).toSec());
+  const ros::Time now = ros::Time::now();
+  watch_.tellClock(clockDefect(stamp, now, ros::Time::isSimTime()));
+  watch_.passed(std::chrono::steady_clock::now(), now.toSec() - stamp.toSec());
 }
 
 void ChainNodelet::noteOutcome(const ros::Time& stamp, std::uint8_t outcome) {
   hears_all_ = true;
-  if (outcome == TrackingStatusMsg::FUSED) return passed(stamp);
+  if (outcome == TrackingStatusMsg::FUSED || outcome == TrackingStatusMsg::LOCATED) {
+    return passed(stamp);
+  }
   watch_.givenUp(std::chrono::steady_clock::now(), outcome);
 }
 

@@ -24,13 +24,19 @@ KeyframeMsg toWire(const LoopQuestionMessage& message) {
   wire.header = message.header;
   wire.number = message.number;
   wire.wanted = wantedBy(question);
-  for (const auto& T : question.corrected) wire.corrected.push_back(toPose(T));
+  for (const pf::MapPose& pose : question.corrected) {
+    wire.corrected.push_back(toPose(pose.T_map_camera));
+    wire.corrected_fragments.push_back(static_cast<std::uint32_t>(pose.fragment));
+  }
   wire.known = question.known ? static_cast<std::uint32_t>(question.known->size()) : 0;
-  wire.pose = toPose(question.place ? question.place->T_map_last : Eigen::Isometry3d::Identity());
+  pf::MapPose pose;
+  if (question.place) pose = question.place->last;
+  if (question.keyframe) pose = question.keyframe->pose;
+  wire.fragment = static_cast<std::uint32_t>(pose.fragment);
+  wire.pose = toPose(pose.T_map_camera);
   if (!question.keyframe) return wire;
   const pf::KeyframeView& view = *question.keyframe;
   wire.keyframe = static_cast<std::uint32_t>(view.id);
-  wire.pose = toPose(view.T_map_camera);
   wire.intensity = *toImage(view.intensity, "mono8", message.header);
   wire.depth = *toImage(view.depth_mm, "16UC1", message.header);
   wire.camera = toCameraInfo(view.camera, message.header);
@@ -54,8 +60,9 @@ LoopConstraintMsg toWire(const LoopAnswerMessage& message) {
     wire.pose.push_back(pose);
   }
   wire.found = static_cast<unsigned char>(answer.place.has_value());
-  wire.place =
-      toPose(answer.place ? answer.place->alignment.T_map_camera : Eigen::Isometry3d::Identity());
+  const pf::MapPose place = answer.place ? answer.place->pose() : pf::MapPose();
+  wire.fragment = static_cast<std::uint32_t>(place.fragment);
+  wire.place = toPose(place.T_map_camera);
   wire.error = message.error;
   wire.keyframes = answer.counts.keyframes;
   wire.ferns = answer.counts.ferns;

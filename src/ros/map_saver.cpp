@@ -17,20 +17,29 @@ constexpr char kMap[] = "map.ply", kDatabase[] = "map.pfdb";
 constexpr char kTrajectory[] = "trajectory.txt";
 constexpr char kPartial[] = "trajectory.partial.txt", kPartialDatabase[] = "map.partial.pfdb";
 constexpr char kNewDatabase[] = "map.pfdb.part";
+constexpr char kOnRequest[] = "_saved";  // what a folder's name ends with that was asked for
 
 namespace fs = std::filesystem;
-
-/// Removes what save() wrote, and the folder where nothing else is in it.
-void forget(const pf::RunFolder& old) {
-  std::error_code ignored;
-  for (const char* name : {kMap, kDatabase, kTrajectory}) fs::remove(old.file(name), ignored);
-  old.removeIfEmpty();
-}
 
 void rename(const std::string& from, const std::string& to) {
   std::error_code error;
   fs::rename(from, to, error);
   if (error) throw pf::InputError(to + ": cannot be written: " + error.message());
+}
+
+pf::Trajectory posesOf(const MapToSave& map) {
+  pf::Trajectory trajectory = map.trajectory();
+  if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
+  return trajectory;
+}
+
+/// Returns how much there is.
+std::string write(const MapToSave& map, const pf::Trajectory& trajectory,
+                  const std::string& map_file, const std::string& trajectory_file) {
+  const Eigen::Isometry3d T_world_map = map.mapper.worldFromMap();
+  pf::saveTrajectory(trajectory_file, pf::inWorld(T_world_map, trajectory), kPose);
+  const std::size_t surfels = pf::saveMap(map_file, map.mapper.map(), T_world_map);
+  return std::to_string(surfels) + " surfels, " + std::to_string(trajectory.size()) + " poses";
 }
 
 }  // namespace
@@ -52,15 +61,15 @@ MapSaver::~MapSaver() {
   if (folder_) folder_->removeIfEmpty();
 }
 
+std::string MapSaver::output() const { return isOn() ? settings_.output : kDefaultOutput; }
+
 const pf::RunFolder& MapSaver::folder() {
-  if (!folder_) folder_.emplace(isOn() ? settings_.output : kDefaultOutput);
+  if (!folder_) folder_.emplace(output());
   return *folder_;
 }
 
 std::string MapSaver::resolve(const std::string& path) const {
-  return fs::absolute(fs::path(isOn() ? settings_.output : kDefaultOutput) / path)
-      .lexically_normal()
-      .string();
+  return fs::absolute(fs::path(output()) / path).lexically_normal().string();
 }
 
 void MapSaver::continueIn(const std::string& file, const MapToSave& map) {
@@ -69,19 +78,34 @@ void MapSaver::continueIn(const std::string& file, const MapToSave& map) {
 }
 
 std::string MapSaver::save(const MapToSave& map) {
-  const pf::Trajectory trajectory = map.trajectory();
-  if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
-  endSaveOnTheWay();
-  const Eigen::Isometry3d T_world_map = map.mapper.worldFromMap();
-  const pf::RunFolder& target = folder();
-  pf::saveTrajectory(target.file(kTrajectory), pf::inWorld(T_world_map, trajectory), kPose);
-  const std::size_t surfels = pf::saveMap(target.file(kMap), map.mapper.map(), T_world_map);
+  const pf::Trajectory trajectory = posesOf(map);
   const std::string continued = saveContinued(map);
-  if (continued.empty() && (recording_ || !isOn())) saveDatabase(map);
+  pf::RunFolder target(output(), pf::RunFolder::Name::partial, kOnRequest);
+  std::string counts;
+  try {
+    counts = write(map, trajectory, target.file(kMap), target.file(kTrajectory));
+    writeDatabase(map, target.file(kDatabase));
+    target.finish();
+  } catch (const std::exception&) {
+    target.discard();
+    throw;
+  }
+  target.makeLatest();
+  return "saved map.ply, map.pfdb and trajectory.txt (" + counts + ") in " + target.path() +
+         (continued.empty() ? "" : "; " + continued);
+}
+
+/// Into the folder of the map that grows.
+std::string MapSaver::saveHere(const MapToSave& map) {
+  const pf::Trajectory trajectory = posesOf(map);
+  endSaveOnTheWay();
+  const pf::RunFolder& target = folder();
+  const std::string counts = write(map, trajectory, target.file(kMap), target.file(kTrajectory));
+  const std::string continued = saveContinued(map);
+  if (continued.empty() && recording_) saveDatabase(map);
   target.makeLatest();
   saved_ = Clock::now();
-  return "saved map.ply (" + std::to_string(surfels) + " surfels) and trajectory.txt (" +
-         std::to_string(trajectory.size()) + " poses) in " + target.path() +
+  return "saved map.ply and trajectory.txt (" + counts + ") in " + target.path() +
          (continued.empty() ? "" : "; " + continued);
 }
 
@@ -93,16 +117,18 @@ std::string MapSaver::saveContinued(const MapToSave& map) {
   return "the map goes on in " + continued_;
 }
 
+void MapSaver::writeDatabase(const MapToSave& map, const std::string& file) const {
+  pf::MapRecording whole(file, pf::MapWriter::Mode::create, settings_.settings, map.mapper);
+  whole.update(map.camera, map.mapper);
+  whole.finish(map.mapper);
+}
+
 /// The map as it is, beside the one that is being recorded.
 void MapSaver::saveDatabase(const MapToSave& map) {
   const std::string fresh = folder().file(kNewDatabase);
   std::error_code ignored;
   fs::remove(fresh, ignored);
-  {
-    pf::MapRecording whole(fresh, pf::MapWriter::Mode::create, settings_.settings, map.mapper);
-    whole.update(map.camera, map.mapper);
-    whole.finish(map.mapper);
-  }
+  writeDatabase(map, fresh);
   rename(fresh, folder().file(kDatabase));
 }
 
@@ -117,9 +143,14 @@ void MapSaver::endRecording() {
   fs::remove(folder().file(kPartialDatabase), ignored);
 }
 
+std::string MapSaver::saveInBetween(const MapToSave& map) {
+  if (map.trajectory().empty()) return {};
+  return isOn() ? saveHere(map) : saveContinued(map);
+}
+
 std::string MapSaver::finish(const MapToSave& map) {
   try {
-    const std::string said = isOn() ? save(map) : saveContinued(map);
+    const std::string said = isOn() ? saveHere(map) : saveContinued(map);
     endRecording();
     return said;
   } catch (const std::exception& error) {
@@ -127,22 +158,15 @@ std::string MapSaver::finish(const MapToSave& map) {
   }
 }
 
-std::string MapSaver::beginAnew(const MapToSave& map) {
-  if (map.trajectory().empty()) {
-    recording_.reset();
-    continued_.clear();
-    return {};
-  }
-  std::string said = isOn() ? save(map) : saveContinued(map);
-  if (isOn()) {
+std::string MapSaver::beginAnew(const MapToSave& map, const std::string& next) {
+  const std::string said = saveInBetween(map);
+  if (!said.empty() && isOn()) {
     endRecording();
-    ended_.push_back(*folder_);
-    if (settings_.maps_kept > 0 && ended_.size() > static_cast<std::size_t>(settings_.maps_kept)) {
-      forget(ended_.front());
-      ended_.pop_front();
-    }
+    ended_.add(*folder_, {kMap, kDatabase, kTrajectory});
   }
-  abandon();
+  // Of a map without a pose, what was recorded stays as it is.
+  if (!said.empty() || recording_) abandon();
+  if (settings_.maps_kept > 0) ended_.keep(static_cast<std::size_t>(settings_.maps_kept), next);
   return said;
 }
 

@@ -49,24 +49,25 @@ MappingSession::MappingSession(const MappingSettings& settings,
   pf::SavedMap saved = pf::readSavedMap(settings.map_file);
   camera_ = saved.camera;
   mapper_ = begunIn(std::move(saved), settings.map_file, use_);
-  map_file_ = settings.map_file;
+  map_file_ = realPath(settings.map_file);
   if (settings.continue_map) saver_.continueIn(map_file_, toSave());
 }
 
 pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::string& trouble) {
   trouble.clear();
-  if (isLoaded() && input.frame.camera != camera_) {
-    pf::FrameStatus status = mapper_->skip(input.frame.stamp_ns, pf::FrameOutcome::bad_input);
-    status.detail = pf::cameraDefect(map_file_, camera_, input.frame.camera, kImages);
-    return status;
+  seen_ = input.frame.camera;
+  pf::FrameStatus status = mapper_->process(input);
+  if (status.is_other_camera && isLoaded()) {
+    status.detail = pf::cameraDefect(map_file_, camera_, seen_, kImages);
   }
-  const pf::FrameStatus status = mapper_->process(input);
   try {
     loops_.serve(*mapper_);
   } catch (const std::exception& error) {
     trouble = error.what();
   }
-  if (status.outcome != pf::FrameOutcome::bad_input) camera_ = input.frame.camera;
+  if (status.outcome != pf::FrameOutcome::bad_input && !pf::isSameCamera(camera_, seen_)) {
+    camera_ = seen_;
+  }
   const std::string unwritten = saver_.note(status, toSave(), use_ == MapUse::extend);
   if (!unwritten.empty()) trouble = unwritten;
   return status;
@@ -80,7 +81,7 @@ void MappingSession::clear() {
 }
 
 std::string MappingSession::reset() {
-  std::string said = saver_.beginAnew(toSave());
+  std::string said = saver_.beginAnew(toSave(), "");
   clear();
   return said + (said.empty() ? "" : "; ") + "the map is empty, the next frame begins a new one";
 }
@@ -97,15 +98,17 @@ std::unique_ptr<pf::Mapper> MappingSession::begunIn(pf::SavedMap map, const std:
 }
 
 std::string MappingSession::load(const std::string& file, pf::SavedMap map) {
-  if (camera_.width > 0 && map.camera != camera_) {
-    throw InputError(pf::cameraDefect(file, map.camera, camera_, kImages));
+  if (seen_.width > 0) {
+    const std::string defect = pf::cameraDefect(file, map.camera, seen_, kImages);
+    if (!defect.empty()) throw InputError(defect);
   }
   const pf::PinholeCamera camera = map.camera;
   auto loaded = begunIn(std::move(map), file, use_);
-  std::string said = saver_.beginAnew(toSave());
+  const std::string real_file = realPath(file);  // `latest` will lead elsewhere
+  std::string said = saver_.beginAnew(toSave(), real_file);
   mapper_ = std::move(loaded);
   loops_.reset();
-  map_file_ = file;
+  map_file_ = real_file;
   camera_ = camera;
   return said + (said.empty() ? "" : "; ") + "the map is that of " + file + ", with " +
          std::to_string(mapper_->map().size()) + " surfels; the camera is looked for in it";
@@ -121,9 +124,9 @@ std::string MappingSession::startAnew(std::string& lost) {
   std::string said;
   lost.clear();
   try {
-    said = saver_.beginAnew(toSave());
+    said = saver_.beginAnew(toSave(), use_ == MapUse::extend ? "" : map_file_);
   } catch (const std::exception& error) {  // the new map is worth more than the old one
-    lost = error.what();
+    lost = std::string("is lost: ") + error.what();
     saver_.abandon();
   }
   if (use_ == MapUse::extend) {
@@ -132,6 +135,18 @@ std::string MappingSession::startAnew(std::string& lost) {
     mapper_ = begunIn(mapper_->saved(camera_), map_file_, use_);
     loops_.reset();
   }
+  return said;
+}
+
+std::string MappingSession::restartClock(std::string& unsaved) {
+  std::string said;
+  unsaved.clear();
+  try {
+    said = saver_.saveInBetween(toSave());
+  } catch (const std::exception& error) {  // the map goes on
+    unsaved = std::string("is not saved: ") + error.what();
+  }
+  mapper_->restartClock();
   return said;
 }
 

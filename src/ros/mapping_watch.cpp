@@ -27,7 +27,12 @@ void MappingWatch::note(const pf::FrameStatus& status, const pf::Mapper& mapper,
   if (!is_lost || found_ns_ > status.stamp_ns || found_ns_ == 0) found_ns_ = status.stamp_ns;
   const std::string lost_s = secondsText(status.stamp_ns - found_ns_);
   const std::string reason = reasonOf(status);
-  if (is_lost) {
+  if (status.is_other_camera) {
+    watch.tell(DiagnosticStatus::ERROR,
+               "lost for " + lost_s + " s: " + reason +
+                   "; ~reset begins a new map with this camera; where that of the map comes back, "
+                   "it is looked for in the map");
+  } else if (is_lost) {
     watch.tell(DiagnosticStatus::ERROR, "lost for " + lost_s + " s: " + reason);
   } else if (status.state == TrackingState::doubtful) {
     watch.tell(DiagnosticStatus::WARN, "doubtful: " + reason);

@@ -39,6 +39,7 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
   if (view.empty()) return message;
   message->rendered_at = toTime(view.stamp_ns);
   message->camera = toCameraInfo(view.camera, header);
+  message->fragment = static_cast<std::uint32_t>(view.fragment);
   Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
   copyPlane(view.depth_m, header, message->depth);
   copyPlane(view.stable, header, message->stable);
@@ -50,6 +51,7 @@ pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
   if (message->depth.data.empty()) return view;
   view.stamp_ns = toNs(message->rendered_at);
   view.camera = toCamera(message->camera, false);
+  view.fragment = static_cast<int>(message->fragment);
   view.T_map_camera.matrix().topRows<3>() =
       Eigen::Map<const RowMajor34>(message->map_from_camera.data());
   view.depth_m = planeOf(message->depth, message, TYPE_32FC1);

@@ -5,6 +5,8 @@
 #include <nav_msgs/Odometry.h>
 #include <tf2_eigen/tf2_eigen.h>
 
+#include <algorithm>
+
 #include "posefusion/core/se3.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
@@ -28,6 +30,7 @@ struct PoseOutput::Links {
 PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless) {
   PoseOutputSettings settings;
   settings.publish_tf = parameters.flag("publish_tf", settings.publish_tf);
+  settings.tf_while_lost = parameters.flag("tf_while_lost", settings.tf_while_lost);
   settings.map_frame = plainFrame(parameters.text("map_frame", frames::kMap));
   settings.odom_frame = plainFrame(parameters.text("odom_frame", ""));
   settings.base_frame = plainFrame(parameters.text("base_frame", ""));
@@ -52,11 +55,16 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
 void PoseOutput::reset() {
   is_loaded_ = false;
   T_map_start_.reset();
+  T_map_odom_.reset();
+  restartClock();
+}
+
+void PoseOutput::restartClock() {
   path_mounts_.clear();
   T_map_base_before_.reset();
   path_.poses.clear();
   path_.header.frame_id = settings_.map_frame;
-  path_sent_ = ros::Time();
+  path_sent_ = sent_ = ros::Time();
 }
 
 void PoseOutput::load(const std::optional<Eigen::Isometry3d>& T_map_start) {
@@ -98,9 +106,10 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   const Eigen::Isometry3d T_map_base = T_map_camera * links.T_base_camera.inverse();
   if (settings_.publish_tf) {
     const bool has_odometry = !settings_.odom_frame.empty();
+    if (has_odometry) T_map_odom_ = T_map_base * links.T_odom_base.inverse();
     const std::string unsent =
         sendTransform(image.stamp, has_odometry ? settings_.odom_frame : links.base,
-                      has_odometry ? T_map_base * links.T_odom_base.inverse() : T_map_base);
+                      has_odometry ? *T_map_odom_ : T_map_base);
     if (!unsent.empty()) note = unsent;
   }
   sendOdometry(image.stamp, links, T_map_base, status.tracking.covariance);
@@ -113,13 +122,19 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   return true;
 }
 
+void PoseOutput::hold(const ros::Time& stamp) {
+  if (!settings_.publish_tf || !settings_.tf_while_lost || !T_map_odom_ || stamp <= sent_) return;
+  sendTransform(stamp, settings_.odom_frame, *T_map_odom_);
+}
+
 void PoseOutput::correct(const pf::Trajectory& corrected) {
   if (!T_map_start_) return;
-  auto camera = corrected.begin();
-  for (std::size_t i = 0; i < path_.poses.size(); ++i) {
+  // From the end: where the clock was put back, stamps before have nothing to do with the path.
+  auto camera = corrected.rbegin();
+  for (std::size_t i = path_.poses.size(); i-- > 0;) {
     geometry_msgs::PoseStamped& pose = path_.poses[i];
-    while (camera != corrected.end() && camera->stamp_ns < toNs(pose.header.stamp)) ++camera;
-    if (camera == corrected.end()) break;
+    while (camera != corrected.rend() && camera->stamp_ns > toNs(pose.header.stamp)) ++camera;
+    if (camera == corrected.rend()) break;
     if (camera->stamp_ns != toNs(pose.header.stamp)) continue;
     pose.pose = toPose(*T_map_start_ * camera->T_world_camera * path_mounts_[i].inverse());
   }
@@ -141,6 +156,7 @@ std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string&
   message.header.frame_id = settings_.map_frame;
   message.child_frame_id = child;
   broadcaster_.sendTransform(message);
+  sent_ = std::max(sent_, stamp);
   return {};
 }
 

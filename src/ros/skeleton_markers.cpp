@@ -83,13 +83,17 @@ visualization_msgs::Marker markerOf(const Person& person, std::size_t index, con
 
 }  // namespace
 
+visualization_msgs::MarkerArray noMarkers(const std_msgs::Header& header) {
+  visualization_msgs::MarkerArray markers;
+  markers.markers.emplace_back();
+  markers.markers.back().header = header;
+  markers.markers.back().action = visualization_msgs::Marker::DELETEALL;
+  return markers;
+}
+
 visualization_msgs::MarkerArray toMarkers(const People& people, const RgbdFrame& frame,
                                           const std_msgs::Header& header) {
-  visualization_msgs::MarkerArray markers;
-  visualization_msgs::Marker clear;
-  clear.header = header;
-  clear.action = visualization_msgs::Marker::DELETEALL;
-  markers.markers.push_back(clear);
+  visualization_msgs::MarkerArray markers = noMarkers(header);
   for (std::size_t i = 0; i < people.people.size(); ++i) {
     const int id = people.people[i].id;
     const std::size_t number = id > 0 ? static_cast<std::size_t>(id) : i;  // keeps its colour

@@ -40,6 +40,12 @@ void StageWatch::givenUp(Time now, std::uint8_t outcome) {
   if (!isHarmless(outcome)) ++new_given_up_;
 }
 
+void StageWatch::tellClock(const std::string& defect) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (clock_ != defect) latencies_s_.clear();
+  clock_ = defect;
+}
+
 void StageWatch::set(const std::string& key, const std::string& value) {
   const std::lock_guard<std::mutex> lock(mutex_);
   values_[key] = value;
@@ -59,6 +65,7 @@ void StageWatch::allowSilence() {
 void StageWatch::judge(Time now, diagnostic_updater::DiagnosticStatusWrapper& out) const {
   out.summary(DiagnosticStatus::OK, "frames pass");
   if (level_ != DiagnosticStatus::OK) out.mergeSummary(level_, told_);
+  if (!clock_.empty()) out.mergeSummary(DiagnosticStatus::WARN, clock_);
   const double silent_s = duration<double>(now - heard_).count();
   if (silent_s >= kSilent_s && !may_be_silent_)
     out.mergeSummaryf(DiagnosticStatus::WARN, "no frame for %.0f s", silent_s);
@@ -69,14 +76,21 @@ void StageWatch::judge(Time now, diagnostic_updater::DiagnosticStatusWrapper& ou
 }
 
 void StageWatch::addLatency(diagnostic_updater::DiagnosticStatusWrapper& out) const {
+  const char *const median = "after the stamp, median (ms)", *const late =
+                                                                 "after the stamp, 99 % (ms)";
+  if (!clock_.empty()) {
+    out.add(median, "unknown");
+    out.add(late, "unknown");
+    return;
+  }
   if (latencies_s_.empty()) return;
   std::vector<double> sorted(latencies_s_.begin(), latencies_s_.end());
   std::sort(sorted.begin(), sorted.end());
   const auto at = [&](double part) {
     return 1e3 * sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
   };
-  out.addf("after the stamp, median (ms)", "%.1f", at(0.5));
-  out.addf("after the stamp, 99 % (ms)", "%.1f", at(0.99));
+  out.addf(median, "%.1f", at(0.5));
+  out.addf(late, "%.1f", at(0.99));
 }
 
 void StageWatch::report(Time now, diagnostic_updater::DiagnosticStatusWrapper& out) {

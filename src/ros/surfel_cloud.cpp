@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "posefusion/graph/fragments.hpp"
-
 namespace posefusion_ros {
 namespace {
 
@@ -71,8 +69,8 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
   std::vector<SurfelPoint> points;
   points.reserve(stable / step + 1);
   std::size_t seen = 0;
-  map.forEachSurfel([&](const pf::SurfelArrays& s, std::size_t i) {
-    if (!map.isStable(s, i) || seen++ % step != 0 || pf::fragmentAt(s.x[i]) != 0) return;
+  map.forEachSurfelOf(pf::kFirstFragment, [&](const pf::SurfelArrays& s, std::size_t i) {
+    if (!map.isStable(s, i) || seen++ % step != 0) return;
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
     points.push_back({p.x(), p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]), n.x(), n.y(), n.z(),

@@ -142,24 +142,24 @@ std::string RunReport::summary(std::size_t surfels) const {
   return out.dump(2) + "\n";
 }
 
-void RunReport::write(const std::string& folder, const SurfelMap& map,
-                      const Eigen::Isometry3d& T_world_map) const {
+void RunReport::writeTrajectories(const std::string& folder,
+                                  const Eigen::Isometry3d& T_world_map) const {
   saveTrajectory(
       folder + "/trajectory.txt", inWorld(T_world_map, trajectory_),
       "pose of the camera (optical frame: z forward, x right, y down) in the map (z up)");
-  if (!live_.empty()) {
-    saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_world_map, live_),
-                   "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
-                   "up), as told when the frame came: loops found later do not correct it");
-  }
-  writeSummary(folder, map, saveMap(folder + "/map.ply", map, T_world_map));
+  if (live_.empty()) return;
+  saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_world_map, live_),
+                 "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
+                 "up), as told when the frame came: loops found later do not correct it");
 }
 
-void RunReport::writeSummary(const std::string& folder, const SurfelMap& map,
-                             std::size_t surfels) const {
+void RunReport::writeSummary(const std::string& folder, std::size_t surfels) const {
   AtomicFile file(folder + "/summary.json");
   file.stream() << summary(surfels);
   file.commit();
+}
+
+void RunReport::writePictures(const std::string& folder, const SurfelMap& map) const {
   const cv::Mat picture = drawMap(map, trajectory_, camera_);
   if (!picture.empty()) savePng(folder + "/map.png", picture);
   const cv::Mat strip = strip_.draw();

@@ -43,6 +43,7 @@ void RunStatistics::add(const ProcessedFrame& frame) {
       ++(frame.status.located ? frames_.tracked : frames_.lost);
       break;
     case FrameOutcome::fused:
+    case FrameOutcome::located:
       ++frames_.tracked;
       break;
     default:

@@ -90,14 +90,16 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
 Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t stamp_ns) {
   if (frames_ == 0 || view.stamp_ns != newest_.stamp_ns) {
     before_ = newest_;
-    newest_ = {view.stamp_ns, view.T_map_camera};
+    newest_ = {view.stamp_ns, {view.fragment, view.T_map_camera}};
     ++frames_;
   }
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   const double last_step = static_cast<double>(newest_.stamp_ns - before_.stamp_ns);
   const double next_step = static_cast<double>(stamp_ns - newest_.stamp_ns);
   if (frames_ < 2 || last_step <= 0.0 || next_step <= 0.0) return T_view_camera;
-  const Eigen::Isometry3d T_before_view = before_.T_map_camera.inverse() * newest_.T_map_camera;
+  if (before_.pose.fragment != newest_.pose.fragment) return T_view_camera;
+  const Eigen::Isometry3d T_before_view =
+      before_.pose.T_map_camera.inverse() * newest_.pose.T_map_camera;
   const double steps = std::min(next_step / last_step, kMaxSteps);
   const Eigen::AngleAxisd turn(T_before_view.linear());
   T_view_camera.linear() = Eigen::AngleAxisd(turn.angle() * steps, turn.axis()).matrix();

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/back_end.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "posefusion/core/se3.hpp"
-#include "posefusion/graph/fragments.hpp"
 
 namespace pf {
 
-int BackEnd::nearest(const Eigen::Isometry3d& T_map_camera) const {
-  int nearest = 0;
+int BackEnd::nearest(const MapPose& pose) const {
+  int nearest = -1;
   double least = std::numeric_limits<double>::max();
   for (const Keyframe& keyframe : graph_.keyframes()) {
-    const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * T_map_camera;
+    if (keyframe.fragment != pose.fragment) continue;
+    const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * pose.T_map_camera;
     const double far = step.translation().norm() + angleOf(step);
     if (far >= least) continue;
     least = far;
@@ -26,28 +27,32 @@ int BackEnd::add(const FusedFrame& frame) {
   Keyframe keyframe;
   keyframe.stamp_ns = frame.stamp_ns;
   keyframe.map_frame = frame.map_frame;
-  keyframe.T_map_camera = frame.T_map_camera;
-  keyframe.fragment = fragmentAt(frame.T_map_camera);
-  if (graph_.keyframes().empty() || frame.begins_fragment) return graph_.addKeyframe(keyframe);
+  keyframe.T_map_camera = frame.pose.T_map_camera;
+  keyframe.fragment = frame.pose.fragment;
+  const int near = nearest(frame.pose);
+  if (near < 0) return graph_.addKeyframe(keyframe);
   const Keyframe last = graph_.keyframes().back();
-  if (frame.is_return) {
-    const int id = graph_.addKeyframe(keyframe, nearest(frame.T_map_camera), frame.covariance);
-    if (frame.carried.is_measured && last.fragment == keyframe.fragment) {
+  const bool is_same_fragment = last.fragment == keyframe.fragment;
+  if (frame.is_return || !is_same_fragment) {
+    const int id = graph_.addKeyframe(keyframe, near, frame.covariance);
+    if (frame.carried.is_measured && is_same_fragment) {
       graph_.addLoop({last.id, id, last.T_map_camera.inverse() * frame.carried.T_map_camera,
                       frame.carried.covariance, ConstraintKind::loop});
     }
     return id;
   }
-  const Eigen::Isometry3d step = last.T_map_camera.inverse() * frame.T_map_camera;
+  const Eigen::Isometry3d step = last.T_map_camera.inverse() * frame.pose.T_map_camera;
   const GraphConfig& config = graph_.config();
   if (isWithin(step, config.keyframe_distance_m, config.keyframe_angle_rad)) return -1;
   return graph_.addKeyframe(keyframe, last.id, frame.covariance);
 }
 
-void BackEnd::record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera) {
-  if (graph_.keyframes().empty()) return;
-  const Keyframe& last = graph_.keyframes().back();
-  frames_.push_back({stamp_ns, {last.id, last.T_map_camera.inverse() * T_map_camera}});
+void BackEnd::record(std::int64_t stamp_ns, const MapPose& pose) {
+  const auto& keyframes = graph_.keyframes();
+  const auto last = std::find_if(keyframes.rbegin(), keyframes.rend(),
+                                 [&](const Keyframe& k) { return k.fragment == pose.fragment; });
+  if (last == keyframes.rend()) return;
+  frames_.push_back({stamp_ns, {last->id, last->T_map_camera.inverse() * pose.T_map_camera}});
 }
 
 std::vector<Deformation> BackEnd::close(const std::vector<LoopConstraint>& loops) {
@@ -79,16 +84,17 @@ Trajectory BackEnd::trajectory() const {
   poses.reserve(frames_.size() - loaded_frames_);
   for (std::size_t i = loaded_frames_; i < frames_.size(); ++i) {
     const auto keyframe = static_cast<std::size_t>(frames_[i].pose.keyframe);
-    if (graph_.keyframes()[keyframe].fragment != 0) continue;  // nobody knows where that is
+    if (graph_.keyframes()[keyframe].fragment != kFirstFragment)
+      continue;  // its place is not known
     poses.push_back({frames_[i].stamp_ns, graph_.poseOf(frames_[i].pose)});
   }
   return poses;
 }
 
-std::vector<Eigen::Isometry3d> BackEnd::keyframePoses() const {
-  std::vector<Eigen::Isometry3d> poses;
+std::vector<MapPose> BackEnd::keyframePoses() const {
+  std::vector<MapPose> poses;
   poses.reserve(graph_.keyframes().size());
-  for (const Keyframe& keyframe : graph_.keyframes()) poses.push_back(keyframe.T_map_camera);
+  for (const Keyframe& k : graph_.keyframes()) poses.push_back({k.fragment, k.T_map_camera});
   return poses;
 }
 

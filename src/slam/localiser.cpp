@@ -31,15 +31,16 @@ constexpr int kProbationFrames = 60;
 
 Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
 
-Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns,
-                          const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
+Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns, const MapPose& pose,
+                          const Brightness& brightness) {
   reset();
+  previous_.fragment = pose.fragment;
   Location location;
-  location.T_map_camera = location.tracking.T_map_camera = T_map_camera;
+  location.T_map_camera = location.tracking.T_map_camera = pose.T_map_camera;
   location.tracking.brightness = brightness;
   location.tracking.converged = true;
   trust(location, stamp_ns, 0.0);
-  remember(frame, {}, {T_map_camera}, location, stamp_ns);
+  remember(frame, {}, {pose.T_map_camera}, location, stamp_ns);
   return location;
 }
 
@@ -151,6 +152,7 @@ void Localiser::carry(const SparseMotion& motion) {
 }
 
 void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_s) {
+  location.fragment = previous_.fragment;
   location.T_map_camera = location.tracking.T_map_camera;
   location.located = true;
   location.outcome = FrameOutcome::fused;
@@ -161,7 +163,8 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
         logSe3(previous_.T_map_camera.inverse() * location.T_map_camera) / elapsed_s;
   }
   ++frames_since_return_;
-  previous_.T_map_camera = T_map_located_ = location.T_map_camera;
+  previous_.T_map_camera = location.T_map_camera;
+  located_ = location.pose();
   previous_.covariance = location.tracking.covariance;
   brightness_ = location.tracking.brightness;
   carried_.T_map_camera = location.T_map_camera;
@@ -194,18 +197,21 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   previous_.covariance = location.tracking.covariance;
   if (location.located) {
     ++reckoned_in_a_row_;
-    T_map_located_ = previous_.T_map_camera;
+    located_.T_map_camera = previous_.T_map_camera;
   }
   const bool lost = !location.located && untrusted_in_a_row_ >= config_.lost_after_frames;
   location.state = state_ = lost ? TrackingState::lost : TrackingState::doubtful;
-  location.T_map_camera = T_map_located_;
+  location.fragment = located_.fragment;
+  location.T_map_camera = located_.T_map_camera;
   proofs_ = 0;
   is_suggested_ = is_place_verified_ = false;
 }
 
-void Localiser::move(const Eigen::Isometry3d& T_new_old) {
+void Localiser::move(const Eigen::Isometry3d& T_new_old, int fragment) {
+  if (previous_.fragment != located_.fragment) goBackToLast();
   previous_.T_map_camera = T_new_old * previous_.T_map_camera;
-  T_map_located_ = T_new_old * T_map_located_;
+  located_.T_map_camera = T_new_old * located_.T_map_camera;
+  previous_.fragment = located_.fragment = fragment;
   carried_.T_map_camera = T_new_old * carried_.T_map_camera;
   landmarks_.move(T_new_old);
 }

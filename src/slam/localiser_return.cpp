@@ -60,7 +60,8 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
   const std::string poorly = poorlyKnown(frame, tracking);
   if (!poorly.empty()) return {FrameOutcome::degenerate, poorly};
   const double blind_s = 1e-9 * static_cast<double>(moment.stamp_ns - seen_ns_);
-  const Eigen::Vector3d way = tracking.T_map_camera.translation() - T_map_located_.translation();
+  const Eigen::Vector3d way =
+      tracking.T_map_camera.translation() - located_.T_map_camera.translation();
   if (moment.forced) {
     const bool is_blind = !location.motion.found && blind_s > kMaxBlind_s;
     const bool is_far = way.norm() > kMaxForcedWay_m;
@@ -81,10 +82,12 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
           std::string(why) + ", the map from there: " + std::string(name(strict.doubt))};
 }
 
-void Localiser::beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness) {
+void Localiser::beginLost(const MapPose& pose, const Brightness& brightness) {
   reset();
   state_ = TrackingState::lost;
-  previous_.T_map_camera = T_map_located_ = T_map_camera;
+  located_ = pose;
+  previous_.fragment = pose.fragment;
+  previous_.T_map_camera = pose.T_map_camera;
   previous_.stamp_ns = kNoFrame;
   brightness_ = brightness;
 }
@@ -131,20 +134,30 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
   previous_.velocity.setZero();
   location.state = TrackingState::lost;
-  location.T_map_camera = T_map_located_;
+  location.fragment = located_.fragment;
+  location.T_map_camera = located_.T_map_camera;
 }
 
-void Localiser::suggest(const Eigen::Isometry3d& T_map_camera,
-                        const Eigen::Isometry3d& T_reckoned) {
+void Localiser::suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned) {
   // What only looks right gives way to a place that was verified.
   if (state_ != TrackingState::lost || is_place_verified_) return;
-  const Eigen::Isometry3d T_map_now = T_map_camera * T_reckoned.inverse() * T_reckoned_;
+  const Eigen::Isometry3d T_map_now = pose.T_map_camera * T_reckoned.inverse() * T_reckoned_;
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
+  previous_.fragment = pose.fragment;
   previous_.T_map_camera = T_map_now;
   previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
   previous_.velocity.setZero();
   proofs_ = kProofs - kProofsOfPlace;
   is_suggested_ = is_place_verified_ = true;
+}
+
+/// Gives up a place suggested in another fragment than that of the last pose.
+void Localiser::goBackToLast() {
+  landmarks_.move(located_.T_map_camera * previous_.T_map_camera.inverse());
+  previous_.fragment = located_.fragment;
+  previous_.T_map_camera = located_.T_map_camera;
+  proofs_ = 0;
+  is_suggested_ = is_place_verified_ = false;
 }
 
 }  // namespace pf

@@ -13,7 +13,15 @@ namespace {
 // A guess that lies further from the last view than this sees too much that the view does not show.
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
 // Neither tracking nor the segmenter looks at anything farther than 8 m.
-const RenderOptions kViewOptions = {false, false, SurfelAge::active, 8.0};
+constexpr double kViewDepth_m = 8.0;
+
+RenderOptions viewOptions(int fragment) {
+  RenderOptions options;
+  options.max_depth_m = kViewDepth_m;
+  options.fragment = fragment;
+  return options;
+}
+
 }  // namespace
 
 /// Why the frame cannot follow the ones before; empty when it can.
@@ -29,8 +37,9 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   if (text.empty() && !(depth_fits && (none || isLikeDepth(still.in_map_mask, CV_8UC1)))) {
     text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
   }
-  if (text.empty() && !view.empty() && input.camera.shrunk(config.frame.shrink) != view.camera) {
-    text = "the camera or the image size is not that of the frames before";
+  if (text.empty() && sees_other_camera) {
+    text = "the camera (" + describe(input.camera) + ") is not that of the map (" +
+           describe(camera) + ")";
   }
   if (text.empty() && input.stamp_ns <= last_stamp_ns) {
     text = "its stamp is not later than that of the frame before";
@@ -38,32 +47,43 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   return text;
 }
 
-/// The last view where it serves, else one of its own.
-RenderedModel Mapper::State::modelFrom(const Eigen::Isometry3d& T) {
-  const Eigen::Isometry3d step = view.T_map_camera.inverse() * T;
-  if (step.translation().norm() < kSameViewShift_m && angleOf(step) < kSameViewTurn_rad) {
-    return {model, view.T_map_camera};
-  }
-  model_elsewhere.assign(viewFrom(T));
-  return {model_elsewhere, T};
+/// Nobody knows where a camera is that is not the map's.
+TrackingState Mapper::State::state() const {
+  return sees_other_camera ? TrackingState::lost : localiser.state();
 }
 
-const ModelView& Mapper::State::viewFrom(const Eigen::Isometry3d& T) {
-  renderer.render(map, frame.camera, T, kViewOptions, elsewhere);
+/// The last view where it serves, else one of its own.
+RenderedModel Mapper::State::modelFrom(const MapPose& pose) {
+  const Eigen::Isometry3d step = view.T_map_camera.inverse() * pose.T_map_camera;
+  if (view.fragment == pose.fragment && step.translation().norm() < kSameViewShift_m &&
+      angleOf(step) < kSameViewTurn_rad) {
+    return {model, view.T_map_camera};
+  }
+  model_elsewhere.assign(viewFrom(pose));
+  return {model_elsewhere, pose.T_map_camera};
+}
+
+const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), elsewhere);
   return elsewhere;
 }
 
 Location Mapper::State::locate(const StaticFrame& input) {
   const std::int64_t stamp_ns = input.frame.stamp_ns;
   if (map.frame() >= 0) {
+    const int where = localiser.fragment();
     MapRenderers render;
-    render.model = [this](const Eigen::Isometry3d& T) { return modelFrom(T); };
-    render.view = [this](const Eigen::Isometry3d& T) -> const ModelView& { return viewFrom(T); };
+    render.model = [=](const Eigen::Isometry3d& T) { return modelFrom({where, T}); };
+    render.view = [=](const Eigen::Isometry3d& T) -> const ModelView& {
+      return viewFrom({where, T});
+    };
     return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render);
   }
   const auto needed =
       config.tracking.min_view_fraction * static_cast<double>(frame.depth_m.total());
-  if (frame.valid_pixels >= needed) return localiser.begin(frame, stamp_ns, T_map_start);
+  if (frame.valid_pixels >= needed) {
+    return localiser.begin(frame, stamp_ns, {kFirstFragment, T_map_start});
+  }
   Location nowhere;
   nowhere.outcome = FrameOutcome::no_depth;
   nowhere.T_map_camera = T_map_start;
@@ -74,6 +94,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   // Colors of the map are those of its first exposure.
   const Brightness& b = location.tracking.brightness;
   FusionOptions options;
+  options.fragment = location.fragment;
   options.may_remove_stable = !location.is_recent_return;
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
@@ -86,7 +107,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
     options.input_depth_m = input_depth_m;
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
-  showFrom(location.T_map_camera, true);
+  showFrom(location.pose(), true);
   view.stamp_ns = last_stamp_ns;
 }
 
@@ -94,13 +115,13 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
 /// none.
 void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();
-  showFrom(location.T_map_camera, fill);
+  showFrom(location.pose(), fill);
   view.stamp_ns = last_stamp_ns;
 }
 
 /// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
-void Mapper::State::showFrom(const Eigen::Isometry3d& T_map_camera, bool fill) {
-  renderer.render(map, frame.camera, T_map_camera, kViewOptions, view);
+void Mapper::State::showFrom(const MapPose& pose, bool fill) {
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), view);
   model.assign(view, fill ? &frame.levels[0] : nullptr);
 }
 
@@ -109,9 +130,14 @@ Mapper::~Mapper() = default;
 
 FrameStatus Mapper::process(const StaticFrame& input) {
   State& s = *state_;
+  if (defectOf(input.frame).empty()) {
+    s.sees_other_camera = !s.view.empty() && !isSameCamera(s.camera, input.frame.camera);
+  }
   FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
   status.detail = s.defect(input);
+  status.is_other_camera = s.sees_other_camera;
   if (!status.detail.empty()) return status;
+  if (s.view.empty()) s.camera = input.frame.camera;
   const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
   s.frame.assign(input.frame, input.mask, s.config.frame);
@@ -123,24 +149,23 @@ FrameStatus Mapper::process(const StaticFrame& input) {
   if (location.outcome == FrameOutcome::forced && location.located) {
     s.follow(location, true);
   } else if (location.outcome == FrameOutcome::fused && !s.may_change) {
+    location.outcome = FrameOutcome::located;
     s.follow(location, false);
   } else if (location.outcome == FrameOutcome::fused) {
-    if (location.is_return) {
-      s.fragment = fragmentAt(location.T_map_camera);
-      s.map_at_loss.reset();  // if that is a fragment, it is not to be found in itself
-    }
+    // If it is back in a fragment whose place is not known, that is not to be found in itself.
+    if (location.is_return) s.map_at_loss.reset();
     s.fuse(input, location);
     s.keep(input, location);
     s.askForFragment();
   } else if (location.state == TrackingState::lost) {
     s.askForPlace();
   }
-  if (location.located) s.back_end.record(input.frame.stamp_ns, location.T_map_camera);
+  if (location.located) s.back_end.record(input.frame.stamp_ns, location.pose());
   status.fusion_ms = watch.lapMs();
   status.state = location.state;
   status.outcome = location.outcome;
-  status.located = location.located && s.fragment == 0;
-  status.fragment = s.fragment;
+  status.located = location.located && s.isPlaceKnown();
+  status.fragment = location.fragment;
   status.detail = location.detail;
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
@@ -167,19 +192,19 @@ const BackEnd& Mapper::backEnd() const { return state_->back_end; }
 FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   FrameStatus status;
   status.stamp_ns = stamp_ns;
-  status.state = state_->localiser.state();
+  status.state = state_->state();
   status.outcome = outcome;
   status.T_map_camera =
-      state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose();
+      state_->map.frame() < 0 ? state_->T_map_start : state_->localiser.lastPose().T_map_camera;
   status.surfels = state_->map.size();
-  status.fragment = state_->fragment;
+  status.fragment = state_->fragment();
   status.map_version = state_->back_end.graph().version();
   status.map_full = state_->map.refused() > 0;
   return status;
 }
 
 const ModelView& Mapper::view() const {
-  return state_->localiser.state() == TrackingState::lost ? state_->nothing : state_->view;
+  return state_->state() == TrackingState::lost ? state_->nothing : state_->view;
 }
 
 ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T_map_camera) const {
@@ -214,6 +239,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.T_world_map.reset();
   s.view = ModelView();
   s.localiser.reset();
+  s.sees_other_camera = false;
   s.T_map_start = T_map_camera;
   s.last_stamp_ns = kBeforeAll;
   s.back_end = BackEnd(s.config.graph);
@@ -224,7 +250,8 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();
-  s.fragment = s.last_fragment = s.frames_to_place = 0;
+  s.last_fragment = kFirstFragment;
+  s.frames_to_place = 0;
   s.lost_s.reset();
   s.at_question = {};
   s.seen_at.reset();

@@ -27,7 +27,7 @@ void Mapper::State::countLostTime(const Location& location, std::int64_t before_
   if (location.state != TrackingState::lost) return lost_s.reset();
   if (!lost_s) {
     lost_s = 0.0;
-    if (fragment != 0) map_at_loss.reset();  // the fragment belongs into it
+    if (!isPlaceKnown()) map_at_loss.reset();  // the fragment belongs into it
   }
   if (before_ns != kBeforeAll && isViewOpen()) {
     *lost_s += std::min(1e-9 * static_cast<double>(last_stamp_ns - before_ns), kMostElapsed_s);
@@ -41,19 +41,19 @@ bool Mapper::State::wantsFragment(const StaticFrame& input) const {
          isViewOpen() && !localiser.isProving();
 }
 
-/// The frame begins a piece of the map of its own, far from all others.
+/// The frame begins a piece of the map of its own, at the origin of its own coordinates.
 Location Mapper::State::beginFragment() {
   if (!map_at_loss) map_at_loss = searchedMap();
   rooms = spreadOut(back_end.keyframePoses());
-  fragment = ++last_fragment;
+  ++last_fragment;
   lost_s.reset();
   seen_at.reset();
   place_is_stale = true;  // what was asked was asked of a lost camera
-  Eigen::Isometry3d T_map_camera = localiser.reckonedPose();
-  T_map_camera.translation() = Eigen::Vector3d(kBetweenFragments_m * fragment, 0, 0);
+  MapPose pose{last_fragment, localiser.reckonedPose()};
+  pose.T_map_camera.translation().setZero();
   const Brightness brightness = localiser.brightness();
-  Location location = localiser.begin(frame, last_stamp_ns, T_map_camera, brightness);
-  location.detail = "begins fragment " + std::to_string(fragment);
+  Location location = localiser.begin(frame, last_stamp_ns, pose, brightness);
+  location.detail = "begins fragment " + std::to_string(last_fragment);
   return location;
 }
 
@@ -61,45 +61,43 @@ Location Mapper::State::beginFragment() {
 /// map, for in the fragment it would find itself.
 std::shared_ptr<const SurfelMap> Mapper::State::searchedMap() const {
   auto searched = std::make_shared<SurfelMap>(map);
-  if (fragment != 0 && localiser.state() != TrackingState::lost) {
-    searched->removeIf([this](const SurfelArrays& surfels, std::size_t i) {
-      return fragmentAt(static_cast<double>(surfels.x[i])) == fragment;
-    });
+  if (!isPlaceKnown() && localiser.state() != TrackingState::lost) {
+    searched->removeFragments([this](int of_block) { return of_block == fragment(); });
   }
   return searched;
 }
 
 /// Asks now and then where in the rest of the map the fragment lies.
 void Mapper::State::askForFragment() {
-  if (fragment == 0 || --frames_to_place > 0 || place_is_asked) return;
+  if (isPlaceKnown() || --frames_to_place > 0 || place_is_asked) return;
   frames_to_place = kFramesToPlace;
   askForPlace();
   if (!place_is_asked) return;
   const Keyframe& last = back_end.graph().keyframes().back();
-  at_question = {last.id, last.T_map_camera.inverse() * localiser.lastPose()};
+  at_question = {last.id, last.T_map_camera.inverse() * localiser.lastPose().T_map_camera};
 }
 
 /// The frame that was asked about lies there: the fragment is joined when that is said twice.
-void Mapper::State::placeFragment(const TrackingResult& alignment) {
-  const Keyframe& keyframe =
-      back_end.graph().keyframes()[static_cast<std::size_t>(at_question.keyframe)];
-  if (keyframe.fragment != fragment) return;
-  const int other = back_end.nearest(alignment.T_map_camera);
-  if (back_end.graph().keyframes()[static_cast<std::size_t>(other)].fragment == fragment) return;
+void Mapper::State::placeFragment(const PlaceVerdict& seen) {
+  const auto& keyframes = back_end.graph().keyframes();
+  const Keyframe& keyframe = keyframes[static_cast<std::size_t>(at_question.keyframe)];
+  const int near = back_end.nearest(seen.pose());
+  if (keyframe.fragment != fragment() || seen.fragment == fragment() || near < 0) return;
   const Eigen::Isometry3d& T_camera = at_question.T_keyframe_camera;
-  const Eigen::Isometry3d T_map_keyframe = alignment.T_map_camera * T_camera.inverse();
+  const Eigen::Isometry3d T_other_keyframe = seen.alignment.T_map_camera * T_camera.inverse();
   const Matrix6d A = adjoint(T_camera);
   FragmentPlace place;
-  place.T_map_fragment = T_map_keyframe * keyframe.T_map_camera.inverse();
-  place.constraint.from = other;
+  place.other = seen.fragment;
+  place.T_other_fragment = T_other_keyframe * keyframe.T_map_camera.inverse();
+  place.constraint.from = near;
   place.constraint.to = keyframe.id;
   place.constraint.T_from_to =
-      back_end.graph().keyframes()[static_cast<std::size_t>(other)].T_map_camera.inverse() *
-      T_map_keyframe;
-  place.constraint.covariance = A * alignment.covariance * A.transpose();
-  const bool again = seen_at && isWithin(T_map_keyframe.inverse() * seen_at->T_map_fragment *
-                                             keyframe.T_map_camera,
-                                         kAlike_m, kAlike_rad);
+      keyframes[static_cast<std::size_t>(near)].T_map_camera.inverse() * T_other_keyframe;
+  place.constraint.covariance = A * seen.alignment.covariance * A.transpose();
+  const bool again =
+      seen_at && seen_at->other == place.other &&
+      isWithin(T_other_keyframe.inverse() * seen_at->T_other_fragment * keyframe.T_map_camera,
+               kAlike_m, kAlike_rad);
   seen_at = place;
   frames_to_place = 0;  // the second answer soon
   if (again) correct({place.constraint});

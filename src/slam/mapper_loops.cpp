@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "mapper_state.hpp"
@@ -15,22 +16,33 @@ namespace {
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
 
-double largestShiftM(const std::vector<Eigen::Isometry3d>& before,
-                     const std::vector<Eigen::Isometry3d>& after) {
+double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after) {
   double largest = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    largest = std::max(largest, (after[i].translation() - before[i].translation()).norm());
+    const Eigen::Vector3d from = before[i].T_map_camera.translation();
+    largest = std::max(largest, (after[i].T_map_camera.translation() - from).norm());
   }
   return largest;
 }
 
+/// A picture of a session with another `frame.shrink`, in the size of this one.
+void fit(KeyframeView& view, const cv::Size& size) {
+  if (view.intensity.size() == size) return;
+  const int smooth = size.width < view.intensity.cols ? cv::INTER_AREA : cv::INTER_LINEAR;
+  cv::resize(view.intensity, view.intensity, size, 0, 0, smooth);
+  // Depths of two surfaces have no mean.
+  cv::resize(view.depth_mm, view.depth_mm, size, 0, 0, cv::INTER_NEAREST_EXACT);
+}
+
 }  // namespace
 
-std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses) {
-  std::vector<Eigen::Isometry3d> chosen;
+std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses) {
+  std::vector<MapPose> chosen;
   for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
-    const auto near = [&](const Eigen::Isometry3d& other) {
-      return (other.translation() - pose->translation()).norm() < kRoomSide_m;
+    const Eigen::Vector3d at = pose->T_map_camera.translation();
+    const auto near = [&](const MapPose& other) {
+      return other.fragment == pose->fragment &&
+             (other.T_map_camera.translation() - at).norm() < kRoomSide_m;
     };
     if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
   }
@@ -39,7 +51,7 @@ std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& p
 
 /// The camera was located. In a fragment the search for the fragment's place goes on.
 void Mapper::State::endSearch() {
-  if (fragment != 0) return;
+  if (!isPlaceKnown()) return;
   map_at_loss.reset();
   rooms.clear();
 }
@@ -50,11 +62,10 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   FusedFrame fused;
   fused.stamp_ns = last_stamp_ns;
   fused.map_frame = map.frame();
-  fused.T_map_camera = location.T_map_camera;
+  fused.pose = location.pose();
   fused.covariance = location.tracking.covariance;
   fused.is_return = location.is_return;
   fused.carried = location.carried;
-  fused.begins_fragment = fragment != 0 && fragment != back_end.graph().keyframes().back().fragment;
   const int id = back_end.add(fused);
   if (id < 0) return;
   if (config.loop.enabled) {
@@ -62,7 +73,7 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
     if (!question->corrected.empty()) question->corrected.pop_back();  // it is new itself
   }
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
-  views.push_back(keyframeView(frame, id, location.T_map_camera, nobody));
+  views.push_back(keyframeView(frame, id, location.pose(), nobody));
   if (config.loop.enabled) question->keyframe = views.back();
 }
 
@@ -98,26 +109,30 @@ void Mapper::State::askForPlace() {
 }
 
 void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
-  const std::vector<Eigen::Isometry3d> before = back_end.keyframePoses();
+  const std::vector<MapPose> before = back_end.keyframePoses();
+  int where = fragment();
   Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
-  bool moves = false;
+  bool moves = false, joins = false;
   for (const Deformation& deformation : back_end.close(loops)) {
     if (deformation.isIdentity()) continue;
     moves = true;
-    T_new_old = deformation.at(map.frame()) * T_new_old;
+    joins |= deformation.joins();
+    T_new_old = deformation.at(map.frame(), where) * T_new_old;
+    where = deformation.fragmentAfter(where);
     deform(map, deformation);
   }
   if (!moves) return;
-  // What moves no keyframe so far lays no pass over another.
-  if (largestShiftM(before, back_end.keyframePoses()) > kLeastLayer_m) removeYoungerLayers(map);
-  localiser.move(T_new_old);
+  // What joins nothing and moves no keyframe so far lays no pass over another.
+  if (joins || largestShiftM(before, back_end.keyframePoses()) > kLeastLayer_m) {
+    removeYoungerLayers(map);
+  }
+  localiser.move(T_new_old, where);
   const bool is_fused = view.stamp_ns == last_stamp_ns;
-  showFrom(T_new_old * view.T_map_camera, is_fused);
+  showFrom({where, T_new_old * view.T_map_camera}, is_fused);
   keyframes_moved = true;
   map_at_loss.reset();
   seen_at.reset();
   place_is_stale = true;
-  fragment = fragmentAt(localiser.lastPose());
 }
 
 std::optional<LoopQuestion> Mapper::takeQuestion() {
@@ -129,8 +144,8 @@ void Mapper::take(const LoopAnswer& answer) {
   if (answer.asked_for_place) {
     s.place_is_asked = false;
     if (answer.place && !s.place_is_stale) {
-      s.localiser.suggest(answer.place->alignment.T_map_camera, s.T_reckoned_at_question);
-      if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(answer.place->alignment);
+      s.localiser.suggest(answer.place->pose(), s.T_reckoned_at_question);
+      if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(*answer.place);
     }
   }
   if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
@@ -152,21 +167,35 @@ void Mapper::load(SavedMap saved, MapUse use) {
   s.map.restore(saved.surfels, saved.frame);
   s.T_world_map = saved.T_world_map;
   s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
+  s.camera = saved.camera;
   s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
   for (KeyframeView& view : saved.views) {
-    if (view.intensity.size() != cv::Size(s.frame.camera.width, s.frame.camera.height)) continue;
+    fit(view, {s.frame.camera.width, s.frame.camera.height});
     view.camera = s.frame.camera;
     s.views.push_back(std::move(view));
   }
   s.may_change = use == MapUse::extend;
   s.closer_is_old = true;
-  const std::vector<Eigen::Isometry3d> poses = s.back_end.keyframePoses();
-  s.rooms = spreadOut(poses);
-  for (const Eigen::Isometry3d& pose : poses) {
-    s.last_fragment = std::max(s.last_fragment, fragmentAt(pose));
-  }
-  s.localiser.beginLost(poses.back(), saved.brightness);
-  s.showFrom(poses.back(), false);
+  const std::vector<MapPose> poses = s.back_end.keyframePoses();
+  for (const MapPose& pose : poses) s.last_fragment = std::max(s.last_fragment, pose.fragment);
+  s.seek(poses.back(), saved.brightness);
+}
+
+void Mapper::restartClock() {
+  State& s = *state_;
+  if (s.back_end.graph().keyframes().empty()) return reset();
+  s.last_stamp_ns = kBeforeAll;
+  s.lost_s.reset();
+  s.seek(s.localiser.lastPose(), s.localiser.brightness());
+}
+
+/// The camera is lost, and looked for everywhere in the map.
+void Mapper::State::seek(const MapPose& last, Brightness brightness) {
+  rooms = spreadOut(back_end.keyframePoses());
+  map_at_loss.reset();
+  place_is_stale = true;  // by what was asked before
+  localiser.beginLost(last, brightness);
+  showFrom(last, false);
 }
 
 SavedMap Mapper::saved(const PinholeCamera& camera) const {
@@ -175,7 +204,7 @@ SavedMap Mapper::saved(const PinholeCamera& camera) const {
   SavedMap saved;
   saved.camera = camera;
   saved.brightness = s.localiser.brightness();
-  saved.surfels = s.map.collect();
+  saved.surfels = s.map.parts();
   saved.frame = s.map.frame();
   saved.T_world_map = s.T_world_map;
   saved.keyframes = graph.keyframes();

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "posefusion/graph/fragments.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -19,12 +18,13 @@ namespace pf {
 constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 
 /// Poses from which a search reaches around all of these; the last ones first.
-std::vector<Eigen::Isometry3d> spreadOut(const std::vector<Eigen::Isometry3d>& poses);
+std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses);
 
-/// Where a keyframe of a fragment would lie in the rest of the map.
+/// Where a fragment would lie in another.
 struct FragmentPlace {
   LoopConstraint constraint;
-  Eigen::Isometry3d T_map_fragment;
+  int other = kFirstFragment;
+  Eigen::Isometry3d T_other_fragment;
 };
 
 /// The mapper's parts: frames are located and fused in mapper.cpp; what is asked of the loop closer
@@ -38,6 +38,8 @@ struct Mapper::State {
   std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
+  PinholeCamera camera;            ///< of the frames of the map, full size
+  bool sees_other_camera = false;  ///< the last frame was of another one
   WorkingFrame frame;
   cv::Mat input_depth_m;      ///< of the frame, before people were taken out
   ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
@@ -48,31 +50,36 @@ struct Mapper::State {
   std::int64_t last_stamp_ns = kBeforeAll;
   BackEnd back_end;
   std::optional<LoopQuestion> question;
-  bool keyframes_moved = false;          ///< since the last question
-  std::vector<KeyframeView> views;       ///< of the keyframes
-  bool closer_is_old = false;            ///< does not know yet of the map that was loaded
-  bool may_change = true;                ///< the map
-  std::vector<Eigen::Isometry3d> rooms;  ///< of a loaded map until it is found: where to look
+  bool keyframes_moved = false;     ///< since the last question
+  std::vector<KeyframeView> views;  ///< of the keyframes
+  bool closer_is_old = false;       ///< does not know yet of the map that was loaded
+  bool may_change = true;           ///< the map
+  std::vector<MapPose> rooms;       ///< of a loaded map until it is found: where to look
   std::size_t next_room = 0;
   // Of the search for a lost camera.
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
   bool place_is_asked = false, place_is_stale = false;
   // Of a piece of the map whose place is not known.
-  int fragment = 0;                      ///< that the camera is in
-  int last_fragment = 0;                 ///< number of the last one begun
+  int last_fragment = kFirstFragment;    ///< number of the last one begun
   std::optional<double> lost_s;          ///< while lost: with an open view
   int frames_to_place = 0;               ///< until the next question where the fragment is
   RelativePose at_question;              ///< of the frame that was asked about
   std::optional<FragmentPlace> seen_at;  ///< told once, not yet twice
 
+  /// That the camera is in or, while lost, was in.
+  int fragment() const { return localiser.lastPose().fragment; }
+  bool isPlaceKnown() const { return fragment() == kFirstFragment; }
+
   std::string defect(const StaticFrame& input) const;
-  RenderedModel modelFrom(const Eigen::Isometry3d& T);
-  const ModelView& viewFrom(const Eigen::Isometry3d& T);
+  TrackingState state() const;
+  RenderedModel modelFrom(const MapPose& pose);
+  const ModelView& viewFrom(const MapPose& pose);
   Location locate(const StaticFrame& input);
   void fuse(const StaticFrame& input, const Location& location);
   void follow(const Location& location, bool fill);
-  void showFrom(const Eigen::Isometry3d& T_map_camera, bool fill);
+  void seek(const MapPose& last, Brightness brightness);
+  void showFrom(const MapPose& pose, bool fill);
   void keep(const StaticFrame& input, const Location& location);
   void tellCloser();
   void endSearch();
@@ -83,7 +90,7 @@ struct Mapper::State {
   bool wantsFragment(const StaticFrame& input) const;
   Location beginFragment();
   void askForFragment();
-  void placeFragment(const TrackingResult& alignment);
+  void placeFragment(const PlaceVerdict& seen);
   void correct(const std::vector<LoopConstraint>& loops);
 };
 

@@ -43,12 +43,14 @@ std::string_view name(FrameOutcome outcome) {
       return "unproven";
     case FrameOutcome::forced:
       return "forced";
+    case FrameOutcome::located:
+      return "located";
   }
   return "unknown";
 }
 
 std::string reasonOf(const FrameStatus& status) {
-  if (status.outcome == FrameOutcome::fused) return {};
+  if (isGood(status.outcome)) return {};
   return std::string(name(status.outcome)) + (status.detail.empty() ? "" : ": " + status.detail);
 }
 

@@ -3,6 +3,7 @@
 // loops are.
 #include "evaluate.hpp"
 
+#include "posefusion/io/run_folder.hpp"
 #include "tool.hpp"
 
 namespace pf {
@@ -14,11 +15,22 @@ struct PairQuestion {
   bool json = false;
 };
 
+/// Takes the newest run where a folder of runs is named.
+CLI::Validator newest() {
+  return CLI::Validator(
+      [](std::string& path) {
+        path = newestRun(path);
+        return std::string();
+      },
+      "", "newest run");
+}
+
 CLI::Option* addTrajectoryOptions(CLI::App& app, TrajectoryQuestion& question) {
   app.add_option("truth", question.truth,
                  "sequence (TUM folder with groundtruth.txt), or true trajectory");
   auto* estimate = app.add_option("estimate", question.estimate,
-                                  "estimated trajectory, or output folder of posefusion_run");
+                                  "estimated trajectory, or output folder of posefusion_run")
+                       ->transform(newest());
   app.add_flag("--scale", question.with_scale, "align with a scale too");
   app.add_option("--plot", question.plot, "picture of the differences to write, PNG");
   app.add_option("--plan", question.plan,
@@ -31,7 +43,9 @@ CLI::Option* addTrajectoryOptions(CLI::App& app, TrajectoryQuestion& question) {
 
 CLI::App* addRunCommand(CLI::App& app, RunQuestion& run) {
   auto* command = app.add_subcommand("run", "the map of a run against its input");
-  command->add_option("run", run.run, "output folder of posefusion_run")->required();
+  command->add_option("run", run.run, "output folder of posefusion_run")
+      ->required()
+      ->transform(newest());
   command->add_option("input", run.input, "TUM folder or bag it was made from")->required();
   command->add_option("--truth", run.truth, "true trajectory, TUM format");
   command->add_option("--camera", run.camera, "camera file, instead of the input's own");
@@ -47,7 +61,9 @@ CLI::App* addRunCommand(CLI::App& app, RunQuestion& run) {
 CLI::App* addKnownCommand(CLI::App& app, KnownQuestion& question) {
   auto* command = app.add_subcommand(
       "known", "how many of the frames that truly see what was mapped before have a pose");
-  command->add_option("run", question.run, "output folder of posefusion_run")->required();
+  command->add_option("run", question.run, "output folder of posefusion_run")
+      ->required()
+      ->transform(newest());
   command->add_option("sequence", question.sequence, "sequence with groundtruth.txt")->required();
   command->add_option("--status", question.status, "table of posefusion_run --save-status")
       ->required();
@@ -60,7 +76,8 @@ CLI::App* addMasksCommand(CLI::App& app, PairQuestion& question) {
   command->add_option("truth", question.truth, "sequence with mask/ (without: nobody is in it)")
       ->required();
   command->add_option("masks", question.checked, "output folder of posefusion_run --save-masks")
-      ->required();
+      ->required()
+      ->transform(newest());
   command->add_flag("--json", question.json, "print JSON");
   return command;
 }
@@ -79,7 +96,9 @@ CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
 CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
   auto* command = app.add_subcommand(
       "surface", "the map of a run against the true surface of a simulated room");
-  command->add_option("run", question.checked, "output folder of posefusion_run")->required();
+  command->add_option("run", question.checked, "output folder of posefusion_run")
+      ->required()
+      ->transform(newest());
   command->add_option("sequence", question.truth, "sequence with scene_points.ply")->required();
   command->add_flag("--json", question.json, "print JSON");
   return command;

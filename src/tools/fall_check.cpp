@@ -37,12 +37,12 @@ struct Options {
   bool each = false;
 };
 
-/// Where the map says that the frames of fragment 0 were taken, up to a time.
+/// Where the map says that the frames of the first fragment were taken, up to a time.
 Trajectory mappedPoses(const SavedMap& map, std::int64_t until_ns) {
   Trajectory poses;
   for (const FrameRecord& frame : map.frames) {
     const Keyframe& keyframe = map.keyframes.at(static_cast<std::size_t>(frame.pose.keyframe));
-    if (keyframe.fragment != 0 || frame.stamp_ns >= until_ns) continue;
+    if (keyframe.fragment != kFirstFragment || frame.stamp_ns >= until_ns) continue;
     poses.push_back({frame.stamp_ns, poseOf(frame.pose, map.keyframes)});
   }
   return poses;
@@ -86,7 +86,7 @@ class Judge {
   Eigen::Isometry3d inMap(const RgbdFrame& frame, const Eigen::Isometry3d& T_map_true) {
     WorkingFrame working;
     working.assign(frame, cv::Mat(), FrameConfig{});
-    const PlaceVerdict place = verifier_.verify(map_, working, T_map_true);
+    const PlaceVerdict place = verifier_.verify(map_, working, {kFirstFragment, T_map_true});
     return place.accepted() ? place.alignment.T_map_camera : T_map_true;
   }
 
@@ -146,7 +146,7 @@ std::vector<FallFrame> framesOf(const Options& options, const SavedMap& saved,
   map.restore(saved.surfels, saved.frame);
   if (is_own) {
     const auto mapped = std::count_if(rows.begin(), rows.end(), [&](const StatusRow& row) {
-      return row.outcome == "fused" && row.stamp_ns < first_fall_ns;
+      return (row.outcome == "fused" || row.outcome == "located") && row.stamp_ns < first_fall_ns;
     });
     map.removeIf([&](const SurfelArrays& s, std::size_t i) { return s.created[i] >= mapped; });
   }

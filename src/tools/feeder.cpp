@@ -5,12 +5,16 @@
 #include <rosgraph_msgs/Clock.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "chain_presence.hpp"
 #include "feeder_settings.hpp"
@@ -20,6 +24,7 @@
 #include "posefusion_ros/latency.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/node_control.hpp"
+#include "posefusion_ros/replay_progress.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transform_replay.hpp"
 #include "posefusion_ros/transforms.hpp"
@@ -35,8 +40,8 @@ using std::chrono::steady_clock;
 // In real time the chain may lose a frame without a word; silence then ends the replay.
 constexpr double kQuiet_s = 5.0;
 constexpr int kQueue = 100;
-constexpr double kEndPatience_s = 60;              // a large map takes its time to be saved
-constexpr std::chrono::seconds kStayPatience(10);  // until rviz is there
+constexpr double kEndPatience_s = 60;   // a large map takes its time to be saved
+constexpr double kStayPatience_s = 10;  // until rviz is there
 
 class Feeder {
  public:
@@ -69,6 +74,9 @@ class Feeder {
   void run() {
     waitForChain();
     const steady_clock::time_point begin = steady_clock::now();
+    const auto most = static_cast<std::size_t>(settings_.max_frames);
+    const std::size_t total = source_->frameCount();
+    ReplayProgress progress(most > 0 ? std::min(most, total) : total, begin);
     std::int64_t first_ns = -1;
     while (ros::ok() && (settings_.max_frames == 0 || sent_ < settings_.max_frames)) {
       const auto next = source_->next();
@@ -90,6 +98,8 @@ class Feeder {
                                       std::chrono::duration_cast<steady_clock::duration>(due));
       }
       send(next->frame);
+      const std::string told = progress.after(static_cast<std::size_t>(sent_), steady_clock::now());
+      if (!told.empty()) ROS_INFO("%s", told.c_str());
     }
     const double patience_s = settings_.lossless ? settings_.timeout_s : kQuiet_s;
     if (!waitBelow(1, patience_s) && settings_.lossless) fail();
@@ -163,10 +173,8 @@ class Feeder {
   }
 
   void onStatus(const TrackingStatusMsg::ConstPtr& status) {
-    std::string name(pf::name(static_cast<pf::FrameOutcome>(status->outcome)));
-    if (status->outcome == TrackingStatusMsg::DROPPED) name = status->reason;
-    if (status->outcome == TrackingStatusMsg::PAUSED) name = "paused";
-    if (status->outcome == TrackingStatusMsg::NO_DETECTOR) name = "without pose detector";
+    const bool is_dropped = status->outcome == TrackingStatusMsg::DROPPED;
+    const std::string name = is_dropped ? status->reason : outcomeName(status->outcome);
     {
       const std::lock_guard<std::mutex> lock(outcome_mutex_);
       ++outcomes_[name];
@@ -209,15 +217,13 @@ class Feeder {
 /// After the last frame. Not by `required` in the launch file: roslaunch calls a normal end an
 /// error then.
 void endLaunch(const FeederSettings& settings, Feeder& feeder) {
-  endNodes({settings.ends, settings.manager}, kEndPatience_s);
+  std::vector<std::string> nodes = settings.ends;
+  nodes.push_back(settings.manager);
+  endNodes(nodes, kEndPatience_s);
   feeder.writeReport();
-  if (!settings.stays.empty()) {
-    const auto end = steady_clock::now() + kStayPatience;
-    const auto look = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
-    while (ros::ok() && steady_clock::now() < end && !isNodeUp(settings.stays)) look();
-    ROS_INFO("all is done; close %s to end", settings.stays.c_str());
-    while (ros::ok() && isNodeUp(settings.stays)) look();
-  }
+  if (settings.stays.empty()) return;
+  ROS_INFO("all is done; close %s to end", settings.stays.c_str());
+  outwait(settings.stays, kStayPatience_s);
 }
 
 /// The exit code.

@@ -3,6 +3,8 @@
 
 #include <ros/console.h>
 
+#include <sstream>
+
 #include "posefusion/core/error.hpp"
 #include "posefusion_ros/parameters.hpp"
 
@@ -26,7 +28,8 @@ FeederSettings readFeederSettings() {
   s.input.topics.depth_camera_info = parameters.text("depth_camera_info_topic", "");
   s.input.depth_stamp_offset_s = parameters.number("depth_stamp_offset_s", 0.0, {-10.0, 10.0});
   s.manager = parameters.text("manager", "");
-  s.ends = parameters.text("ends", "");
+  std::istringstream ends(parameters.text("ends", ""));
+  for (std::string name; ends >> name;) s.ends.push_back(name);
   s.stays = parameters.text("stays", "");
   s.output = parameters.text("output", "");
   try {

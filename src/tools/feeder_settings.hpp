@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "posefusion/slam/config.hpp"
 #include "posefusion_ros/bag_source.hpp"
@@ -20,7 +21,8 @@ struct FeederSettings {
   std::string frame_id;  ///< of the images; empty: the bag's
   std::string
       manager;  ///< node of the chain: the replay fails where it is gone; empty: not looked for
-  std::string ends;    ///< node that is ended after the last frame, so that it saves; may be empty
+  std::vector<std::string>
+      ends;            ///< nodes that are ended after the last frame, in this order; may be empty
   std::string stays;   ///< node that is waited for then (rviz); may be empty
   std::string output;  ///< of fusion: a summary is written there at the end; empty: none
   pf::Config config;   ///< for the summary

@@ -8,11 +8,13 @@
 #include <set>
 
 #include "posefusion/config/yaml_map.hpp"
+#include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/map_database.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/map_repair.hpp"
 #include "posefusion/io/ply.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
@@ -53,20 +55,38 @@ void printInfo(const std::string& file) {
   std::printf("blobs        %zu, %zu bytes\n", content.blobs.size(), bytes);
 }
 
-/// Reads all there is; whatever is wrong throws.
+/// Reads all there is; whatever is wrong or missing throws.
 void check(const std::string& file) {
   const MapReader reader(file);
   const MapContent content = reader.content();
-  const std::size_t surfels = reader.surfels().size();
+  const std::size_t surfels = surfelsIn(reader.surfels());
   for (const Keyframe& k : content.keyframes) reader.images(k.id);
+  if (!reader.missing().empty()) {
+    throw InputError(reader.missing() + "; there are " + std::to_string(content.frames.size()) +
+                     " frames, " + std::to_string(content.keyframes.size()) + " keyframes and " +
+                     std::to_string(surfels) + " surfels");
+  }
   std::printf("%s: whole: %zu surfels, %zu keyframes, %zu frames\n", file.c_str(), surfels,
               content.keyframes.size(), content.frames.size());
 }
 
-/// The poses of all frames, as the graph has them now, in the order of their stamps.
+/// Succeeds also where something is lost: the new file is whole.
+void repair(const std::string& file, const std::string& repaired) {
+  const MapRepair repair = repairMap(file, repaired);
+  std::printf("%s: %zu surfels in %zu blocks, %zu keyframes, %zu with images, %zu frames\n",
+              repaired.c_str(), repair.kept.surfels, repair.kept.blocks, repair.keyframes,
+              repair.kept.images, repair.frames);
+  for (const std::string& lost : repair.lost) std::printf("lost: %s\n", lost.c_str());
+  if (repair.lost.empty()) std::printf("nothing is lost\n");
+}
+
+/// The poses of all frames of the first fragment, as the graph has them now, in the order of their
+/// stamps.
 Trajectory trajectoryOf(const MapContent& content) {
   Trajectory trajectory;
   for (const FrameRecord& frame : content.frames) {
+    const auto keyframe = static_cast<std::size_t>(frame.pose.keyframe);
+    if (content.keyframes[keyframe].fragment != kFirstFragment) continue;
     trajectory.push_back({frame.stamp_ns, poseOf(frame.pose, content.keyframes)});
   }
   std::stable_sort(trajectory.begin(), trajectory.end(),
@@ -118,7 +138,7 @@ void exportAll(const std::string& file, const std::string& folder) {
 }
 
 int lookIntoMap(int argc, char** argv) {
-  CLI::App app{"Looks into a map file of posefusion without changing it."};
+  CLI::App app{"Looks into a map file of posefusion without changing it, or mends it in a copy."};
   app.require_subcommand(1);
   std::string file, folder;
   const auto command = [&](const char* name, const char* help) {
@@ -131,8 +151,14 @@ int lookIntoMap(int argc, char** argv) {
   command("export", "writes map.ply trajectory.txt keyframes/ plan.png")
       ->add_option("-o,--output", folder, "folder to write into")
       ->required();
+  std::string repaired;
+  CLI::App* const repairing =
+      command("repair", "writes what can be read of a damaged map into a new file");
+  repairing->add_option("-o,--output", repaired, "the new file")->required();
   CLI11_PARSE(app, argc, argv);
-  if (*info) {
+  if (*repairing) {
+    repair(file, repaired);
+  } else if (*info) {
     printInfo(file);
   } else if (*checking) {
     check(file);

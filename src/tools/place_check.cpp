@@ -109,7 +109,7 @@ nlohmann::ordered_json verifyAll(const SurfelMap& map, const TrueFrame& query,
   nlohmann::ordered_json each = nlohmann::ordered_json::array();
   const std::clock_t begin = std::clock();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const PlaceVerdict v = verifier.verify(map, query.frame, candidates[i].T_map_camera);
+    const PlaceVerdict v = verifier.verify(map, query.frame, candidates[i].pose);
     const Eigen::Isometry3d& T = v.alignment.T_map_camera;
     const double off_m = (T.translation() - query.T.translation()).norm();
     const double off_deg = degreesBetween(T, query.T);
@@ -140,11 +140,11 @@ nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
                                  const Eigen::Vector3d& up, const PlaceSearchConfig& config) {
   const std::clock_t begin = std::clock();
   const PlaceQuery small = placeQuery(query.frame, last.linear().transpose() * up);
-  const auto candidates = searchPlaces(points, small, last, up, config);
+  const auto candidates = searchPlaces(points, small, {kFirstFragment, last}, up, config);
   const double search_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   int rank = 0;
   for (std::size_t i = 0; i < candidates.size() && rank == 0; ++i) {
-    if (isRight(candidates[i].T_map_camera, query.T)) rank = static_cast<int>(i) + 1;
+    if (isRight(candidates[i].pose.T_map_camera, query.T)) rank = static_cast<int>(i) + 1;
   }
   const Eigen::Isometry3d step = last.inverse() * query.T;
   nlohmann::ordered_json out = {{"time_s", query.time_s},
@@ -165,9 +165,9 @@ nlohmann::ordered_json searchOne(const SurfelMap& map, const MapPoints& points,
   PlaceSearchConfig there = config;
   there.reach_m = 0;
   there.heights_m = {0.0};
-  const auto at_truth = searchPlaces(points, small, query.T, up, there);
+  const auto at_truth = searchPlaces(points, small, {kFirstFragment, query.T}, up, there);
   for (const PlaceCandidate& c : at_truth) {
-    if (!isRight(c.T_map_camera, query.T)) continue;
+    if (!isRight(c.pose.T_map_camera, query.T)) continue;
     out["true"] = {c.score, c.explained, c.agreeing, c.correlation};
     break;
   }

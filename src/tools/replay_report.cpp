@@ -122,7 +122,8 @@ std::string ReplayReport::write() {
   }
   report_.setCorrected(pf::loadTrajectory(folder + "/trajectory.txt"));
   const pf::SurfelMap map = mapOf(folder + "/map.ply");
-  report_.writeSummary(folder, map, map.size());
+  report_.writeSummary(folder, map.size());
+  report_.writePictures(folder, map);
   return "\n" + report_.table() + "results  " + folder;
 }
 

@@ -14,29 +14,30 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/calibrated_source.hpp"
-#include "posefusion/io/files.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run.hpp"
 #include "posefusion/run/run_report.hpp"
 #include "progress.hpp"
 #include "run_map.hpp"
-#include "run_observers.hpp"
 #include "run_options.hpp"
+#include "run_results.hpp"
 
 namespace pf {
 namespace {
 
-constexpr char kJournal[] = "trajectory.partial.txt";  // while the run lasts
-
 volatile std::sig_atomic_t stop_requested = 0;  // the signal that came
 
-/// The first Ctrl-C ends the run in order; the second one ends the process.
+/// The first Ctrl-C ends the run in order, as the end of its terminal does; the second one ends the
+/// process. What is ignored (nohup) stays ignored.
 void stopOnSignals() {
   struct sigaction action {};
   action.sa_handler = [](int signal) { stop_requested = signal; };
   action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 void requireOtherFolder(const RunOptions& options) {
@@ -70,35 +71,31 @@ void sayLeftOut(const InputReport& report, Progress& progress) {
   for (const auto& note : report.notes) progress.say(note);
 }
 
+/// What the user should know of a frame; empty: nothing.
+std::string remarkOn(const ProcessedFrame& frame, const std::string& defect) {
+  if (!defect.empty()) return "frame left out: " + defect;
+  if (frame.status.outcome != FrameOutcome::bad_input) return {};
+  return "frame left out: " + frame.status.detail;
+}
+
 /// Runs the chain; what stops it early (a damaged file) is returned, to be thrown once all is
 /// written.
 std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipeline& pipeline,
-                           RunReport& report, TrajectoryJournal& journal, RunMap& map) {
-  RunObservers observers(options, pipeline.mapper().map());
+                           RunReport& report, RunResults& results) {
   const std::size_t limit = options.max_frames > 0 ? options.max_frames : SIZE_MAX;
   Progress progress(std::min(source.frameCount(), limit));
-  const Eigen::Isometry3d T_world_map = pipeline.mapper().worldFromMap();
+  const auto say = [&](const std::string& line) {
+    if (!line.empty()) progress.say(line);
+  };
   std::exception_ptr failure;
-  bool full = false, disk_full = false;
+  bool full = false;
   try {
     runPipeline(source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
       report.add(frame);
-      observers.add(frame);
-      if (frame.status.located &&
-          !journal.add({frame.status.stamp_ns, T_world_map * frame.status.T_map_camera}) &&
-          !std::exchange(disk_full, true)) {
-        progress.say(std::string(kJournal) + " cannot be written (disk full?): the run goes on");
-      }
-      const std::string trouble = map.add(frame);
-      if (!trouble.empty()) progress.say(trouble + "; tried again");
-      if (!defect.empty()) {
-        progress.say("frame left out: " + defect);
-      } else if (frame.status.outcome == FrameOutcome::bad_input) {
-        progress.say("frame left out: " + frame.status.detail);
-      }
+      say(results.add(frame));
+      say(remarkOn(frame, defect));
       if (frame.status.map_full && !std::exchange(full, true)) {
-        progress.say(
-            "the map is full (map.memory_limit_mb): tracking goes on, without new surfels");
+        say("the map is full (map.memory_limit_mb): tracking goes on, without new surfels");
       }
       progress.update(report.statistics().frames().read);
       return stop_requested == 0 && report.statistics().frames().read < limit;
@@ -107,9 +104,20 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
     failure = std::current_exception();
   }
   pipeline.finish();
-  observers.finish(report);
   sayLeftOut(source.report(), progress);
   return failure;
+}
+
+/// Throws where the run has told nothing of the camera.
+void requirePoses(const RunOptions& options, const RunReport& report) {
+  if (!report.trajectory().empty()) return;
+  const FrameCounts& frames = report.statistics().frames();
+  std::string text =
+      options.input + ": no frame has a pose: " + std::to_string(frames.read) + " read";
+  for (const auto& [outcome, count] : frames.by_outcome) {
+    text += ", " + std::to_string(count) + " " + outcome;
+  }
+  throw InputError(text);
 }
 
 int run(const RunOptions& options) {
@@ -125,21 +133,19 @@ int run(const RunOptions& options) {
   Pipeline pipeline(options.config, detectorFor(options, *source));
   requireOtherFolder(options);
   if (!options.map_file.empty()) loadMap(options, pipeline);
-  makeFolder(options.output);
   stopOnSignals();
-  TrajectoryJournal journal(options.output + "/" + kJournal, "the run is not finished");
-  RunMap map(options, pipeline.mapper());
-  const auto failure = process(options, *source, pipeline, report, journal, map);
+  RunResults results(options, pipeline);
+  const auto failure = process(options, *source, pipeline, report, results);
   report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
   report.setVerification(pipeline.loopVerificationMs());
-  report.write(options.output, pipeline.mapper().map(), pipeline.mapper().worldFromMap());
-  journal.remove();
-  map.finish();
+  results.finish(report);
   const int signal = stop_requested;
   if (signal != 0) std::cout << "interrupted: these are the results so far\n";
-  std::cout << report.table() << "results  " << options.output << "\n";
+  std::cout << report.table() << "results  " << results.path() << "\n";
   if (failure) std::rethrow_exception(failure);
-  return signal != 0 ? 128 + signal : 0;  // as shells say it
+  if (signal != 0) return 128 + signal;  // as shells say it
+  requirePoses(options, report);
+  return 0;
 }
 
 }  // namespace

@@ -8,18 +8,7 @@
 namespace pf {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr char kPartial[] = "/map.partial.pfdb", kWhole[] = "/map.pfdb";
-constexpr char kLog[] = "-wal";  // SQLite's companion file
-
-/// What a killed run left is kept as `.old`.
-void setAside(const std::string& path) {
-  std::error_code ignored;
-  fs::rename(path, path + ".old", ignored);
-  fs::remove(path + ".old" + kLog, ignored);
-  fs::rename(path + kLog, path + ".old" + kLog, ignored);
-}
 
 }  // namespace
 
@@ -35,7 +24,8 @@ void loadMap(const RunOptions& options, Pipeline& pipeline) {
   }
 }
 
-RunMap::RunMap(const RunOptions& options, const Mapper& mapper) : mapper_(mapper) {
+RunMap::RunMap(const RunOptions& options, const std::string& folder, const Mapper& mapper)
+    : mapper_(mapper) {
   if (options.localize_only) return;
   const std::string settings = toYaml(options.config);
   if (options.continue_map) {
@@ -43,9 +33,8 @@ RunMap::RunMap(const RunOptions& options, const Mapper& mapper) : mapper_(mapper
     recording_.emplace(path_, MapWriter::Mode::extend, settings, mapper);
     return;
   }
-  path_ = options.output + kPartial;
-  final_path_ = options.output + kWhole;
-  setAside(path_);
+  path_ = folder + kPartial;
+  final_path_ = folder + kWhole;
   recording_.emplace(path_, MapWriter::Mode::create, settings, mapper);
 }
 
@@ -61,13 +50,9 @@ void RunMap::finish() {
   const bool any = recording_->finish(mapper_);
   recording_.reset();
   if (final_path_.empty()) return;
-  std::error_code error;
-  if (!any) {
-    fs::remove(path_, error);
-    return;
-  }
-  if (!fs::exists(path_ + kLog)) fs::rename(path_, final_path_, error);
-  if (error) throw InputError(final_path_ + ": cannot be written: " + error.message());
+  if (any) return renameMapFile(path_, final_path_);
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
 }
 
 }  // namespace pf

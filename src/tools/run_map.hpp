@@ -18,8 +18,8 @@ void loadMap(const RunOptions& options, Pipeline& pipeline);
 /// or the one it continues; none where it only localises.
 class RunMap {
  public:
-  /// Throws InputError naming the file.
-  RunMap(const RunOptions& options, const Mapper& mapper);
+  /// `folder`: of the run. Throws InputError naming the file.
+  RunMap(const RunOptions& options, const std::string& folder, const Mapper& mapper);
 
   /// After each frame. Tells what could not be written.
   std::string add(const ProcessedFrame& frame);

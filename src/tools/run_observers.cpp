@@ -37,19 +37,20 @@ void StatusWriter::add(const ProcessedFrame& frame) {
   row.outcome = name(status.outcome);
   row.reason = reasonOf(status);
   row.T_map_camera = status.T_map_camera;
-  if (status.outcome == FrameOutcome::fused) row.covariance = status.tracking.covariance;
+  if (isGood(status.outcome)) row.covariance = status.tracking.covariance;
   rows_.push_back(std::move(row));
 }
 
 void LiveDepthCheck::add(const ProcessedFrame& frame) {
-  if (index_++ < kFirstFrame || frame.status.outcome != FrameOutcome::fused) return;
+  if (index_++ < kFirstFrame || !isGood(frame.status.outcome)) return;
   RgbdFrame still = frame.seen.frame;
   still.depth = frame.segmentation.static_depth;
   check_.add(still, frame.segmentation.mask, frame.status.T_map_camera);
 }
 
-RunObservers::RunObservers(const RunOptions& options, const SurfelMap& map) {
-  if (options.save_masks) masks_.emplace(options.output);
+RunObservers::RunObservers(const RunOptions& options, const std::string& folder,
+                           const SurfelMap& map) {
+  if (options.save_masks) masks_.emplace(folder);
   if (!options.status_file.empty()) status_.emplace(options.status_file);
   if (options.check_depth) depth_.emplace(map);
 }

@@ -57,8 +57,8 @@ class LiveDepthCheck {
 /// Those of the above that the user asked for.
 class RunObservers {
  public:
-  /// The map must outlive it.
-  RunObservers(const RunOptions& options, const SurfelMap& map);
+  /// `folder`: of the run. The map must outlive it.
+  RunObservers(const RunOptions& options, const std::string& folder, const SurfelMap& map);
 
   void add(const ProcessedFrame& frame);
   /// Writes the files and tells the report what was found.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_options.hpp"
 
+#include <charconv>
 #include <iostream>
 #include <vector>
 
@@ -9,6 +10,24 @@
 
 namespace pf {
 namespace {
+
+constexpr long kMostFrames = 1'000'000'000, kMostThreads = 1024;
+
+/// Accepts 0 to `most`, and says so otherwise (a negative number would wrap around).
+CLI::Validator wholeNumber(long most) {
+  const std::string range = "0 to " + std::to_string(most);
+  return CLI::Validator(
+      [most, range](const std::string& text) {
+        long value = -1;
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        const bool is_number = error == std::errc() && stop == end;
+        return is_number && value >= 0 && value <= most
+                   ? std::string()
+                   : "'" + text + "': expected a whole number, " + range;
+      },
+      range);
+}
 
 /// Options that end up in the configuration.
 struct ConfigOptions {
@@ -65,10 +84,13 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
   app.add_option("--detector", config.detector, "where people come from")
       ->check(
           CLI::IsMember({"auto", "embedded", "network", "network+embedded", "recorded", "none"}));
-  app.add_option("--output", options.output, "folder for the results")->capture_default_str();
-  app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: all");
+  app.add_option("--output", options.output,
+                 "where each run makes a folder of its own for its results; latest leads to it")
+      ->capture_default_str();
+  app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: all")
+      ->check(wholeNumber(kMostFrames));
   app.add_option("--threads", options.threads, "threads to use; 0: all cores")
-      ->check(CLI::NonNegativeNumber);
+      ->check(wholeNumber(kMostThreads));
   app.add_option("--truth", options.truth, "true trajectory, TUM format");
   app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
   app.add_option("--calibration", options.calibration,

@@ -91,6 +91,55 @@ TEST(ChainDiagnostics, ALostCameraIsAnErrorThatSaysSinceWhen) {
       << diagnostics.of("fusion").message;
 }
 
+TEST(ChainDiagnostics, AnotherCameraIsAnErrorThatNamesBoth) {
+  Chain chain("exchanged");
+  const Diagnostics diagnostics(chain);
+  ASSERT_TRUE(chain.load());
+  const auto send = [&chain](int i, double more_px) {
+    CameraMessages m = toMessages(emptyRoom().frame(i).frame);
+    m.info->K[0] += more_px;
+    m.info->P[0] += more_px;
+    return chain.process(m);
+  };
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(outcome(send(i, 0)), TrackingStatusMsg::FUSED);
+  const pf::PinholeCamera of_map = emptyRoom().frame(0).frame.camera;
+  pf::PinholeCamera other = of_map;
+  other.fx += 5;
+  TrackingStatusMsg status;
+  for (int i = 4; i < 6; ++i) {
+    status = send(i, 5);
+    EXPECT_EQ(outcome(status), TrackingStatusMsg::BAD_INPUT);
+    EXPECT_EQ(status.state, TrackingStatusMsg::LOST);
+    EXPECT_NE(status.reason.find(pf::describe(of_map)), std::string::npos) << status.reason;
+    EXPECT_NE(status.reason.find(pf::describe(other)), std::string::npos) << status.reason;
+  }
+  ASSERT_TRUE(diagnostics.waitFor("fusion", "state", "lost"));
+  const DiagnosticStatus told = diagnostics.of("fusion");
+  EXPECT_EQ(told.level, DiagnosticStatus::ERROR);
+  for (const std::string& text : {pf::describe(of_map), pf::describe(other), std::string("~reset")})
+    EXPECT_NE(told.message.find(text), std::string::npos) << told.message;
+  status = send(6, 1e-6);
+  EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << status.reason << " (the map is there)";
+  EXPECT_EQ(outcome(send(7, 5)), TrackingStatusMsg::BAD_INPUT);
+  ASSERT_TRUE(chain.call("reset").success);
+  EXPECT_EQ(outcome(send(8, 5)), TrackingStatusMsg::FUSED) << "a map of the new camera";
+}
+
+TEST(ChainDiagnostics, StampsOfAnotherClockAreAWarningThatSaysWhatToDo) {
+  Chain chain("clocks_differ");
+  const Diagnostics diagnostics(chain);
+  ASSERT_TRUE(chain.load());
+  chain.process(toMessages(emptyRoom().frame(0).frame));  // stamps begin at 1000 s
+  ASSERT_TRUE(diagnostics.waitFor("fusion", "after the stamp, median (ms)", "unknown"));
+  EXPECT_EQ(diagnostics.of("fusion").level, DiagnosticStatus::WARN);
+  EXPECT_NE(diagnostics.of("fusion").message.find("use_sim_time true"), std::string::npos)
+      << diagnostics.of("fusion").message;
+  chain.process(restamped(toMessages(emptyRoom().frame(1).frame), toNs(ros::Time::now())));
+  EXPECT_TRUE(
+      Chain::waitUntil([&] { return diagnostics.of("blur_gate").level == DiagnosticStatus::OK; }));
+  EXPECT_NE(diagnostics.value("blur_gate", "after the stamp, median (ms)"), "unknown");
+}
+
 TEST(ChainDiagnostics, ANodeletThatStaysIdleSaysWhy) {
   Chain chain("idle");
   const Diagnostics diagnostics(chain);

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "../temporary_folder.hpp"
 #include "chain_fixture.hpp"
-#include "posefusion/graph/fragments.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 
 namespace posefusion_ros {
@@ -21,9 +19,12 @@ constexpr int kMapped = 60, kCovered = 20, kLookedAbout = 6, kPatience = 60;
 
 const pf::SimulatedSequence& room() { return pf::exactBox<kMapped>(); }
 
-std::ptrdiff_t surfelsInFragment(const pf::SurfelArrays& surfels) {
-  return std::count_if(surfels.x.begin(), surfels.x.end(),
-                       [](float x) { return pf::fragmentAt(x) == 1; });
+std::size_t surfelsInFragment(const std::vector<pf::FragmentSurfels>& parts) {
+  std::size_t count = 0;
+  for (const pf::FragmentSurfels& part : parts) {
+    if (part.fragment == 1) count += part.surfels.size();
+  }
+  return count;
 }
 
 class ChainFragments : public testing::Test {

@@ -2,64 +2,39 @@
 // What becomes of a map: saved, emptied, begun anew.
 #include <gtest/gtest.h>
 #include <posefusion/GetMap.h>
+#include <sys/resource.h>
 
-#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <set>
 
-#include "../temporary_folder.hpp"
-#include "chain_fixture.hpp"
 #include "posefusion/io/map_file.hpp"
-#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/io/saved_map_file.hpp"
 #include "posefusion_ros/surfel_cloud.hpp"
+#include "saving_fixture.hpp"
 
 namespace posefusion_ros {
 namespace {
 
-/// A chain that saves, and a camera in an empty room.
-class ChainSaving : public testing::Test {
- protected:
-  void load(const std::string& space, const std::string& output) {
-    chain.emplace(space);
-    chain->set("output", output);
-    ASSERT_TRUE(chain->load());
+/// While it lives no file grows beyond some kilobytes: as on a full disk.
+class FullDisk {
+ public:
+  FullDisk() : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit small = before_;
+    small.rlim_cur = 20000;
+    setrlimit(RLIMIT_FSIZE, &small);
   }
-
-  /// Sends a frame of the room and waits for its status.
-  TrackingStatusMsg process(int index, std::int64_t later_s = 0) {
-    pf::RgbdFrame frame = emptyRoom().frame(index).frame;
-    frame.stamp_ns += later_s * 1000000000L;
-    return chain->process(toMessages(frame));
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
   }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
 
-  /// Plays three frames, then three that are 50 s earlier; all of them are to be fused.
-  void playWithAJumpBack() {
-    for (const int later_s : {100, 50}) {
-      for (int i = 0; i < 3; ++i) {
-        const auto status = process(i, later_s);
-        EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED)
-            << later_s << " " << i << status.reason;
-        EXPECT_EQ(toNs(status.header.stamp), emptyRoom().stamp(i) + later_s * 1000000000L);
-      }
-    }
-  }
-
-  /// The folders of the runs in order, besides the link to the latest.
-  std::vector<std::string> runs(const std::string& output = "out") const {
-    std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / output)) {
-      if (!entry.is_symlink()) found.push_back(entry.path().string());
-    }
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
-  static std::size_t posesOf(const std::string& file) { return pf::loadTrajectory(file).size(); }
-
-  const pf::TemporaryFolder folder;
-  std::optional<Chain> chain;
+ private:
+  sighandler_t handler_;
+  rlimit before_{};
 };
 
 TEST_F(ChainSaving, ResetKeepsTheMapAndSaveTellsWhere) {
@@ -69,11 +44,13 @@ TEST_F(ChainSaving, ResetKeepsTheMapAndSaveTellsWhere) {
   EXPECT_GT(grown, 0U);
   const auto saved = chain->call("save_map");
   EXPECT_TRUE(saved.success);
-  EXPECT_NE(saved.message.find(runs().front()), std::string::npos) << saved.message;
+  ASSERT_EQ(saves().size(), 1U);
+  EXPECT_NE(saved.message.find(saves().front()), std::string::npos) << saved.message;
+  EXPECT_EQ(posesOf(folder / "out/latest/trajectory.txt"), 3U);
   process(3);
   const auto kept = chain->call("reset");
   EXPECT_TRUE(kept.success);
-  EXPECT_NE(kept.message.find("(4 poses) in " + runs().front()), std::string::npos) << kept.message;
+  EXPECT_NE(kept.message.find(" 4 poses) in " + runs().front()), std::string::npos) << kept.message;
   EXPECT_TRUE(chain->call("reset").success);
   const auto again = process(4);
   EXPECT_EQ(outcome(again), TrackingStatusMsg::FUSED);
@@ -124,8 +101,12 @@ TEST_F(ChainSaving, OnRequestOnlyNothingIsWrittenUnasked) {
   EXPECT_TRUE(chain->call("save_map").success);
   chain->unload();
   std::filesystem::current_path(here);
-  ASSERT_EQ(runs("posefusion_output").size(), 2U);
-  EXPECT_EQ(posesOf(runs("posefusion_output")[0] + "/trajectory.txt"), 1U);
+  EXPECT_TRUE(folders("posefusion_output", false).empty());
+  const auto saved = folders("posefusion_output", true);
+  ASSERT_EQ(saved.size(), 2U);
+  EXPECT_EQ(posesOf(saved[0] + "/trajectory.txt"), 1U);
+  EXPECT_EQ(posesOf(saved[1] + "/trajectory.txt"), 2U);
+  EXPECT_EQ(pf::readSavedMap(saved[1] + "/map.pfdb").frames.size(), 2U);
 }
 
 TEST_F(ChainSaving, FilesLieInTheMapFrameOfTf) {
@@ -163,56 +144,65 @@ TEST_F(ChainSaving, AnOutputThatCannotBeWrittenEndsTheStart) {
   chain->unload();
 }
 
-TEST_F(ChainSaving, AFailedSaveIsAnAnswerAndResetKeepsTheMap) {
+TEST_F(ChainSaving, WhatWasAskedForStaysAsItWasSaved) {
+  chain.emplace("asked_for");
+  chain->set("output", folder / "out");
+  chain->set("maps_kept", 2);
+  ASSERT_TRUE(chain->load());
+  for (int i = 0; i < 2; ++i) process(i);
+  ASSERT_TRUE(chain->call("save_map").success);
+  process(2);
+  ASSERT_TRUE(chain->call("save_map").success);
+  const std::vector<std::string> saved = saves();
+  ASSERT_EQ(saved.size(), 2U) << "of one map";
+  std::ofstream(runs().front() + "/notes.txt") << "the user's";
+  const std::string notes = runs().front() + "/notes.txt";
+  std::vector<std::string> bytes;
+  for (const auto& path : saved) bytes.push_back(pf::readFile(path + "/map.pfdb"));
+  for (int i = 3; i < 10; ++i) {
+    ASSERT_TRUE(chain->call("reset").success);
+    EXPECT_EQ(outcome(process(i)), TrackingStatusMsg::FUSED);
+  }
+  chain->unload();
+  EXPECT_EQ(saves(), saved);
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    EXPECT_TRUE(pf::readFile(saved[i] + "/map.pfdb") == bytes[i]);
+    EXPECT_EQ(pf::readSavedMap(saved[i] + "/map.pfdb").frames.size(), 2 + i);
+    EXPECT_EQ(posesOf(saved[i] + "/trajectory.txt"), 2 + i);
+    EXPECT_TRUE(std::filesystem::exists(saved[i] + "/map.ply"));
+  }
+  EXPECT_EQ(pf::readFile(notes), "the user's");
+  EXPECT_EQ(runs().size(), 4U) << "two, that of the notes, and the one that was saved at the end";
+}
+
+TEST_F(ChainSaving, WhereTheDiskIsFullASaveIsRefusedAndLeavesNothing) {
+  load("disk_full", folder / "out");
+  for (int i = 0; i < 3; ++i) process(i);
+  std_srvs::TriggerResponse refused;
+  {
+    const FullDisk full;
+    refused = chain->call("save_map");
+  }
+  EXPECT_FALSE(refused.success);
+  EXPECT_NE(refused.message.find(folder / "out/"), std::string::npos) << refused.message;
+  EXPECT_TRUE(saves().empty()) << saves().front();
+  const auto saved = chain->call("save_map");
+  EXPECT_TRUE(saved.success) << saved.message;
+  EXPECT_EQ(saves().size(), 1U);
+}
+
+TEST_F(ChainSaving, WhereItCannotBeSavedResetKeepsTheMap) {
   load("failing", folder / "out");
   process(0);
   std::filesystem::create_directories(runs().front() + "/map.ply/in the way");
-  for (const std::string service : {"save_map", "reset"}) {
-    const auto response = chain->call(service);
-    EXPECT_FALSE(response.success);
-    EXPECT_NE(response.message.find(runs().front() + "/map.ply"), std::string::npos)
-        << response.message;
-  }
+  const auto response = chain->call("reset");
+  EXPECT_FALSE(response.success);
+  EXPECT_NE(response.message.find(runs().front() + "/map.ply"), std::string::npos)
+      << response.message;
   EXPECT_EQ(outcome(process(1)), TrackingStatusMsg::FUSED);
   std::filesystem::remove_all(runs().front() + "/map.ply");
   chain->unload();
   EXPECT_EQ(posesOf(folder / "out/latest/trajectory.txt"), 2U) << "nothing was emptied";
-}
-
-TEST_F(ChainSaving, ATimeJumpBeginsANewMapAndKeepsTheOldOne) {
-  load("jump", folder / "out");
-  playWithAJumpBack();
-  ASSERT_TRUE(chain->call("save_map").success);
-  ASSERT_EQ(runs().size(), 2U);
-  EXPECT_EQ(posesIn(runs()[0] + "/trajectory.txt").substr(0, 5), "1100.");
-  EXPECT_EQ(posesIn(runs()[1] + "/trajectory.txt").substr(0, 5), "1050.");
-  chain->unload();
-}
-
-TEST_F(ChainSaving, OfMapsEndedUnaskedANumberIsKept) {
-  chain.emplace("kept");
-  chain->set("output", folder / "out");
-  chain->set("maps_kept", 2);
-  ASSERT_TRUE(chain->load());
-  for (const int later_s : {90, 80, 70, 60, 50}) {
-    EXPECT_EQ(outcome(process(0, later_s)), TrackingStatusMsg::FUSED);
-  }
-  chain->unload();
-  ASSERT_EQ(runs().size(), 3U) << "two, and the one that was saved at the end";
-  std::set<std::string> begins;
-  for (const auto& run : runs()) begins.insert(posesIn(run + "/trajectory.txt").substr(0, 5));
-  EXPECT_EQ(begins, (std::set<std::string>{"1070.", "1060.", "1050."}));
-}
-
-TEST_F(ChainSaving, ATimeJumpBeginsANewMapEvenWhereTheOldOneCannotBeKept) {
-  load("jump_unsaved", folder / "out");
-  std::filesystem::create_directories(runs().front() + "/map.ply/in the way");
-  playWithAJumpBack();
-  chain->unload();
-  ASSERT_EQ(runs().size(), 2U);
-  EXPECT_EQ(posesIn(runs()[1] + "/trajectory.txt").substr(0, 5), "1050.");
-  EXPECT_EQ(posesIn(runs()[0] + "/trajectory.partial.txt").substr(0, 5), "1100.")
-      << "at least the poses of the old map are kept";
 }
 
 TEST_F(ChainSaving, PosesAreOnTheDiskAsTheyComeAndTheMapNowAndThen) {

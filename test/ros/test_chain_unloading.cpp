@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <ros/service_manager.h>
 #include <ros/service_publication.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <atomic>
 #include <thread>
@@ -67,6 +68,34 @@ TEST(ChainUnloading, FusionGoesBeforeARequestHasArrived) {
   ASSERT_TRUE(chain.hasLostFusion());
   service->processRequest({}, 0, nullptr);
   service.reset();
+}
+
+TEST(ChainUnloading, SkeletonsDoNotOutliveTheirPeople) {
+  using visualization_msgs::MarkerArray;
+  Chain chain("skeletons_go");
+  std::mutex mutex;
+  std::vector<MarkerArray> arrays;
+  const boost::function<void(const MarkerArray::ConstPtr&)> on_markers =
+      [&](const MarkerArray::ConstPtr& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        arrays.push_back(*message);
+      };
+  const auto subscriber = chain.handle().subscribe<MarkerArray>(topics::kSkeletons, 10, on_markers);
+  ASSERT_TRUE(chain.load());
+  ASSERT_TRUE(Chain::waitUntil([&] { return subscriber.getNumPublishers() > 0; }));
+  const auto isCleared = [&](std::size_t count) {
+    return Chain::waitUntil([&] {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return arrays.size() >= count && arrays.back().markers.size() == 1 &&
+             arrays.back().markers[0].action == visualization_msgs::Marker::DELETEALL;
+    });
+  };
+  chain.process(toMessages(emptyRoom().frame(0).frame));
+  EXPECT_TRUE(isCleared(1)) << "nobody is there";
+  ASSERT_TRUE(chain.call("reset").success);
+  EXPECT_TRUE(isCleared(2)) << "the map was emptied";
+  chain.unload("segmenter");
+  EXPECT_TRUE(isCleared(3)) << "the segmenter has gone";
 }
 
 TEST(ChainUnloading, EachGoesWhileImagesFlow) {

@@ -4,10 +4,12 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
 import unittest
+import xmlrpc.client
 
 FRAMES = 8
 TIME_LIMIT_S = 150
@@ -64,21 +66,21 @@ class Replay(unittest.TestCase):
                            "output:=" + self.folder + "/ros_run")
         self.assertIn(f"{FRAMES} frames sent, {FRAMES} fused", text)
         self.assertIn("in " + self.folder + "/ros_run/", text)
-        self.assertNotRegex(text, r"REQUIRED|ERROR|FATAL|has died|escalat")
+        self.assertNotRegex(text, r"REQUIRED|WARN|ERROR|FATAL|has died|escalat")
         self.assertLess(text.count("\n * /"), 60, "parameters at the start")
         self.call(program("posefusion_run"), self.bag, "--detector", "recorded", "--output",
                   self.folder + "/offline")
-        offline = poses(self.folder + "/offline/trajectory.txt")
+        offline = poses(self.folder + "/offline/latest/trajectory.txt")
         self.assertEqual(len(offline), FRAMES)
         self.assertEqual(poses(self.folder + "/ros_run/latest/trajectory.txt"), offline)
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/map.ply").read_bytes(),
-                         pathlib.Path(self.folder, "offline/map.ply").read_bytes())
+                         pathlib.Path(self.folder, "offline/latest/map.ply").read_bytes())
         self.check_summaries(text)
 
     def check_summaries(self, text):
         """What the replay tells beside the offline run is the same, as far as it is told."""
         replayed, offline = (json.loads(pathlib.Path(self.folder, run, "summary.json").read_text())
-                             for run in ("ros_run/latest", "offline"))
+                             for run in ("ros_run/latest", "offline/latest"))
         for key in ("version", "frames", "masks", "surfels", "configuration"):
             self.assertEqual(replayed[key], offline[key], key)
         for key in ("ate_rmse_m", "ate_held_rmse_m"):
@@ -87,7 +89,7 @@ class Replay(unittest.TestCase):
         self.assertIn("tracking", replayed["stages"])
         self.assertGreater(pathlib.Path(self.folder, "ros_run/latest/map.png").stat().st_size, 10000)
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/people.png").read_bytes(),
-                         pathlib.Path(self.folder, "offline/people.png").read_bytes())
+                         pathlib.Path(self.folder, "offline/latest/people.png").read_bytes())
         self.assertIn("ATE ", text)
         self.assertRegex(text, r"results +" + self.folder + "/ros_run/")
 
@@ -190,6 +192,41 @@ class Replay(unittest.TestCase):
             ["roslaunch", *options, "posefusion", "slam.launch", "rviz:=false", "detector:=none",
              *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, env=dict(os.environ, PWD=self.folder))
+
+    def test_a_map_is_saved_by_whatever_signal_the_chain_ends(self):
+        for number, (target, sent) in enumerate((("roslaunch", signal.SIGHUP), ("roslaunch", signal.SIGTERM),
+                                                 ("manager", signal.SIGTERM), ("manager", signal.SIGHUP))):
+            with self.subTest(target=target, signal=sent):
+                self.check_that_a_signal_saves(target, sent, self.folder + f"/signal_{number}")
+
+    def check_that_a_signal_saves(self, target, sent, output):
+        port = free_port()
+        environment = dict(os.environ, ROS_HOSTNAME="localhost", ROS_HOME=self.folder + "/ros", PWD=self.folder,
+                           ROS_MASTER_URI=f"http://localhost:{port}")
+        with open(output + ".log", "w+", encoding="utf-8") as log:
+            chain = subprocess.Popen(
+                ["roslaunch", "-p", str(port), "posefusion", "slam.launch", "rviz:=false", "detector:=none",
+                 "color_topic:=rgb/image_color", "depth_topic:=depth_registered/image",
+                 "camera_info_topic:=rgb/camera_info", "sanitize:=" + SANITIZE, "output:=" + output],
+                cwd=self.folder, env=environment, stdout=log, stderr=subprocess.STDOUT)
+            self.addCleanup(chain.kill)
+            text = self.call(program("posefusion_feeder"), self.folder + "/sequence", "__ns:=/posefusion",
+                             "_lossless:=false", "_rate:=0.2", "_clock:=false", port=port)
+            self.assertIn(f"{FRAMES} frames sent", text)
+            self.assertFalse(os.path.exists(output + "/latest/trajectory.txt"))
+            os.kill(chain.pid if target == "roslaunch" else self.pid_of_manager(port), sent)
+            chain.wait(TIME_LIMIT_S)
+            log.seek(0)
+            said = log.read()
+        self.assertTrue(os.path.exists(output + "/latest/trajectory.txt"), said)
+        self.assertTrue(os.path.exists(output + "/latest/map.pfdb"), said)
+        self.assertGreater(len(poses(output + "/latest/trajectory.txt")), 0)
+        self.assertNotIn("escalating", said)
+
+    def pid_of_manager(self, port):
+        master = xmlrpc.client.ServerProxy(f"http://localhost:{port}")
+        node = master.lookupNode("/test", "/posefusion/manager")[2]
+        return xmlrpc.client.ServerProxy(node).getPid("/test")[2]
 
     def test_slam_takes_the_settings_of_a_camera(self):
         done = self.slam(["--dump-params"], "camera:=realsense_d4xx", "camera_name:=eye",

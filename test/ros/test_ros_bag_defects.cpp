@@ -110,6 +110,24 @@ TEST_F(BagSourceTest, StampsGoingBackAreReported) {
   EXPECT_TRUE(has(source->report().notes[0], "1 depth images have stamps that go back"));
 }
 
+TEST_F(BagSourceTest, AStampOfTheFutureCostsItsOwnFrameAloneAndAPauseNone) {
+  BagFile bag(path());
+  bag.info();
+  for (const int ms : {33, 66, 7'000'000, 100, 133, 60'000, 60'033}) {
+    bag.color(ms * kMs);
+    bag.depth(ms * kMs);
+  }
+  bag.close();
+  std::size_t good = 0;
+  std::string defects;
+  for (const auto& frame : readAll(*openInput(path()))) {
+    good += frame.defect.empty() ? 1 : 0;
+    defects += frame.defect;
+  }
+  EXPECT_EQ(good, 6U);
+  EXPECT_EQ(defects, "stamp 7000.000000 is later than those of the frames after it");
+}
+
 TEST_F(BagSourceTest, UnusableImagesAreDefectsOfTheirFrames) {
   BagFile bag(path());
   bag.info();

@@ -88,6 +88,7 @@ TEST(StageMessages, StatusConstantsAreThoseOfTheCore) {
   using Status = TrackingStatusMsg;
   const std::map<FrameOutcome, int> outcomes = {
       {FrameOutcome::fused, Status::FUSED},
+      {FrameOutcome::located, Status::LOCATED},
       {FrameOutcome::bad_input, Status::BAD_INPUT},
       {FrameOutcome::blurred, Status::BLURRED},
       {FrameOutcome::no_depth, Status::NO_DEPTH},
@@ -129,6 +130,7 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   view.camera.fx = view.camera.fy = 5;
   view.camera.cx = 1.5;
   view.camera.cy = 1.25;
+  view.fragment = 2;
   view.T_map_camera.translation() << 0.1, 0.2, 0.3;
   view.depth_m = cv::Mat(3, 4, CV_32FC1, cv::Scalar(1.5));
   view.depth_m.at<float>(2, 3) = 10;
@@ -137,6 +139,7 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   const ModelViewMsg::ConstPtr message = toMessage(view, std_msgs::Header());  // owns the pixels
   const pf::ModelView read = fromMessage(message);
   EXPECT_TRUE(read.camera == view.camera);
+  EXPECT_EQ(read.fragment, 2);
   EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
   for (const auto plane : {&pf::ModelView::depth_m, &pf::ModelView::stable}) {
     EXPECT_TRUE(same(read.*plane, view.*plane));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/map_pose.hpp"
 
 namespace pf {
 
@@ -14,7 +15,8 @@ struct CalibrationView {
   int id = -1;           ///< of the keyframe; no two views have the same
   PinholeCamera camera;  ///< of the depth image, without lens distortion
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
-  cv::Mat depth_mm;  ///< CV_16UC1, 0 = none; people are out of it
+  int fragment = kFirstFragment;  ///< of the map, that the pose is in
+  cv::Mat depth_mm;               ///< CV_16UC1, 0 = none; people are out of it
 };
 
 /// A piece of plane, fitted to a small window of a depth image. Planes are linear in inverse depth:
@@ -35,6 +37,7 @@ class ViewSurface {
   int id() const { return id_; }
   const PinholeCamera& camera() const { return camera_; }
   const Eigen::Isometry3d& T_map_camera() const { return T_map_camera_; }
+  int fragment() const { return fragment_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }  ///< those there are
 
   /// The patch nearest to a pixel; null where there is none.
@@ -44,6 +47,7 @@ class ViewSurface {
   int id_;
   PinholeCamera camera_;
   Eigen::Isometry3d T_map_camera_;
+  int fragment_;
   int step_ = 1, radius_ = 1, columns_ = 0, rows_ = 0;
   std::vector<int> index_;  ///< of the patch of each cell; -1: none
   std::vector<SurfacePatch> patches_;

@@ -22,4 +22,9 @@ std::vector<std::pair<std::size_t, std::size_t>> matchStamps(
     const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second,
     std::int64_t max_difference_ns);
 
+/// Which stamps of a recording to believe: the most that rise from each to the next, so that one of
+/// the future costs itself alone, not all that come after it. Of two that exclude each other alike
+/// the later stamp is believed.
+std::vector<bool> risingStamps(const std::vector<std::int64_t>& stamps_ns);
+
 }  // namespace pf

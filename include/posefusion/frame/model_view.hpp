@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/map_pose.hpp"
 
 namespace pf {
 
@@ -13,6 +14,7 @@ namespace pf {
 struct ModelView {
   std::int64_t stamp_ns = 0;  ///< of the frame whose pose it is rendered from
   PinholeCamera camera;
+  int fragment = kFirstFragment;  ///< of the map, that is seen
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing
   cv::Mat normal_x;   ///< CV_32FC1, camera frame, unit length, towards the camera

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "posefusion/core/map_pose.hpp"
+
 namespace pf {
 
 /// A node of the pose graph.
 struct Keyframe {
-  int id = -1;       ///< place in PoseGraph::keyframes(), which gives it
-  int fragment = 0;  ///< piece of the world that is known to hang together; 0 holds the origin
+  int id = -1;  ///< place in PoseGraph::keyframes(), which gives it
+  int fragment = kFirstFragment;
   std::int64_t stamp_ns = 0;
   std::int32_t map_frame = 0;  ///< number of the fused frame, as in SurfelArrays::created
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();

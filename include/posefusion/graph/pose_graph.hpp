@@ -61,9 +61,9 @@ class PoseGraph {
   /// from now on, and nothing moves until later loops want more.
   GraphResult optimise();
 
-  /// Two fragments by a loop between them: the later moves rigidly to where the loop wants it and
-  /// takes the other's number, then all is optimised. Refused like any loop: nothing changes then.
-  /// Throws like addLoop(), and when both are of one fragment.
+  /// Two fragments by a loop between them: the later moves rigidly to where the loop wants it, in
+  /// the other's coordinates, and takes the other's number, then all is optimised. Refused like any
+  /// loop: nothing changes then. Throws like addLoop(), and when both are of one fragment.
   GraphResult joinFragment(const PoseConstraint& loop);
 
   Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }

@@ -39,6 +39,7 @@ struct MapContent {
 /// A block of surfels by its place in SurfelMap::blocks().
 struct BlockRecord {
   std::uint32_t index = 0;
+  int fragment = kFirstFragment;
   SurfelArrays surfels;
 };
 
@@ -54,13 +55,15 @@ struct MapUpdate : MapContent {
 };
 
 /// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). Nobody else can open
-/// it meanwhile. A process that dies leaves what the last whole write() brought. Not thread safe,
-/// but may be used from any one thread.
+/// it meanwhile. A process that dies leaves what the last whole write() brought, in the file and
+/// the log beside it (`*.pfdb-wal`); without the log, what the write() before brought. Not thread
+/// safe, but may be used from any one thread.
 class MapWriter {
  public:
   enum class Mode {
     create,  ///< the file must not exist
-    extend   ///< the file must be a map; the first write() must bring all blocks
+    extend   ///< the file must be a map; the first write() must bring all blocks, and makes a file
+             ///< of an older version one of the present version
   };
 
   /// Throws InputError naming the file.
@@ -78,12 +81,16 @@ class MapWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Gives a closed map file another name. Throws InputError naming the file, and leaves both as they
+/// are, where `from` was not closed or there is something at `to` already.
+void renameMapFile(const std::string& from, const std::string& to);
+
 /// How much a map file holds.
 struct MapCounts {
   std::size_t blocks = 0, surfels = 0, images = 0, bytes = 0;
 };
 
-/// Reads a map file without changing it.
+/// Reads a map file, of this version or an older one, without changing it.
 class MapReader {
  public:
   /// Throws InputError naming the file when it is no map, damaged, of a newer version or in use.
@@ -94,10 +101,14 @@ class MapReader {
 
   /// Each throws InputError naming the file and what in it cannot be.
   MapContent content() const;
-  SurfelArrays surfels() const;  ///< block by block
+  std::vector<FragmentSurfels> surfels() const;  ///< block by block, as SurfelMap::parts()
   /// Both images are empty when none are stored.
   KeyframeImages images(int keyframe) const;
   MapCounts counts() const;
+
+  /// Why the newest of what was written may not be there; empty where all of it is. A map that was
+  /// not closed has it in its log, which is lost where the file was copied or renamed without it.
+  const std::string& missing() const;
 
  private:
   struct State;

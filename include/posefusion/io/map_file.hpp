@@ -7,11 +7,14 @@
 
 namespace pf {
 
-/// Writes the stable surfels, in the order in which they were made, as binary little-endian PLY:
-/// float x y z nx ny nz (metres, moved by `T_file_map`), uchar red green blue, float radius
-/// confidence. Returns their number. Throws InputError naming the file.
+/// Writes the stable surfels of the first fragment, in the order in which they were made, as binary
+/// little-endian PLY: float x y z nx ny nz (metres, moved by `T_file_map`), uchar red green blue,
+/// float radius confidence. Returns their number. Throws InputError naming the file.
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map = Eigen::Isometry3d::Identity());
+
+/// How many surfels saveMap() would write.
+std::size_t savedSurfels(const SurfelMap& map);
 
 /// Reads what saveMap() writes; weights are the confidences. Throws InputError naming the file.
 SurfelArrays loadMap(const std::string& path);

@@ -49,11 +49,11 @@ class LoopCloser {
 
   /// New poses after a correction: of keyframe i at place i. Throws InputError when there are fewer
   /// than the last id wants.
-  void setPoses(const std::vector<Eigen::Isometry3d>& T_map_camera);
+  void setPoses(const std::vector<MapPose>& poses);
 
   /// Where in the map a picture may have been taken (camera poses, not verified): its features
   /// matched with those of the keyframes whose ferns are most alike.
-  std::vector<Eigen::Isometry3d> placesLike(const KeyframeView& view);
+  std::vector<MapPose> placesLike(const KeyframeView& view);
 
   /// Verified constraints from older keyframes to the last one added: at most one for each, and no
   /// more than are enough. The nearest come first: depth that is off by a few percent spoils a
@@ -61,7 +61,7 @@ class LoopCloser {
   std::vector<LoopConstraint> findLoops();
 
   /// Of the keyframes, in the map as last told.
-  std::vector<Eigen::Isometry3d> poses() const;
+  std::vector<MapPose> poses() const;
 
   const LoopCounts& counts() const { return counts_; }
   const FernDatabase& ferns() const { return ferns_; }

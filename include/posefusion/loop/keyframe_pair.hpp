@@ -15,12 +15,12 @@ struct KeyframeView {
   cv::Mat depth_mm;     ///< CV_16UC1, same size, 0 = nothing known
   PinholeCamera camera;
   Thumbnail thumbnail;
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  MapPose pose;
   bool nobody_in_view = true;
 };
 
-KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id,
-                          const Eigen::Isometry3d& T_map_camera, bool nobody_in_view);
+KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
+                          bool nobody_in_view);
 
 /// A keyframe as a frame to align, and as a model to align with. Holds much memory, and reuses it.
 struct KeyframePicture {

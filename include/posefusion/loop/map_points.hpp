@@ -10,8 +10,8 @@
 
 namespace pf {
 
-/// A thinned copy of the map to search places in: one stable surfel per voxel and facing. Immutable
-/// once made, so that a search may run beside fusion.
+/// A thinned copy of a fragment of the map to search places in: one stable surfel per voxel and
+/// facing. Immutable once made, so that a search may run beside fusion.
 struct MapPoints {
   std::vector<float> x, y, z;     ///< m, map frame
   std::vector<float> nx, ny, nz;  ///< unit normal, map frame
@@ -23,7 +23,7 @@ struct MapPoints {
 
 /// Of each voxel and facing (the axis nearest to the normal) the stable surfel with the most
 /// support. The order depends on the map alone.
-MapPoints thinnedPoints(const SurfelMap& map, double voxel_m = 0.06);
+MapPoints thinnedPoints(const SurfelMap& map, int fragment = kFirstFragment, double voxel_m = 0.06);
 
 /// Points with unit normals, of which `count`.
 struct OrientedPoints {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/map_pose.hpp"
 #include "posefusion/frame/working_frame.hpp"
 #include "posefusion/loop/map_points.hpp"
 
@@ -48,26 +49,27 @@ struct PlaceSearchConfig {
 PlaceSearchConfig wideSearch();
 
 struct PlaceCandidate {
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  MapPose pose;
   double score = 0;        ///< at most 1.5; what the candidates are sorted by
   double explained = 0;    ///< part of the query's pixels where the map shows something
   double agreeing = 0;     ///< part of those at about the query's distance
   double correlation = 0;  ///< of the grey levels of those that agree, -1 to 1
 };
 
-/// Where the query may have been taken: the map's points are drawn from a grid of positions around
-/// a pose and compared with it for all headings. From each position one panorama is drawn (azimuth
-/// and elevation); a heading is a shift of it, so that a pose costs no drawing of its own.
+/// Where the query may have been taken: the points of the pose's fragment are drawn from a grid of
+/// positions around a pose and compared with it for all headings. From each position one panorama
+/// is drawn (azimuth and elevation); a heading is a shift of it, so that a pose costs no drawing of
+/// its own.
 ///
 /// The score counts, per pixel of the query: at the right distance (within the noise and the grid)
 /// up to +1, off by more -1, unknown to the map 0; and half the correlation of the grey levels.
 ///
-/// `up` is the direction against gravity in the map frame. The tilt of the camera is that of
-/// `around` and, where known, that of the query's own floor or of a surface that it may lie on.
-/// Best first, none within 0.2 m and 10 degrees of a better one. The bits do not depend on the
-/// number of threads.
+/// `up` is the direction against gravity in the map frame of the fragment. The tilt of the camera
+/// is that of `around` and, where known, that of the query's own floor or of a surface that it may
+/// lie on. Best first, none within 0.2 m and 10 degrees of a better one. The bits do not depend on
+/// the number of threads.
 std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
-                                         const Eigen::Isometry3d& around, const Eigen::Vector3d& up,
+                                         const MapPose& around, const Eigen::Vector3d& up,
                                          const PlaceSearchConfig& config);
 
 }  // namespace pf

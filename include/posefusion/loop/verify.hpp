@@ -44,12 +44,14 @@ struct PlaceAgreement {
 
 struct PlaceVerdict {
   PlaceDoubt doubt = PlaceDoubt::little_overlap;
-  TrackingResult alignment;  ///< pose and covariance
-  PlaceAgreement agreement;  ///< at that pose
+  int fragment = kFirstFragment;  ///< of the map, that the place is in
+  TrackingResult alignment;       ///< pose in it, and covariance
+  PlaceAgreement agreement;       ///< at that pose
 
   bool accepted() const { return doubt == PlaceDoubt::none; }
   /// Higher is better, for choosing among candidates.
   double score() const { return agreement.overlap * agreement.agreeing; }
+  MapPose pose() const { return {fragment, alignment.T_map_camera}; }
 };
 
 /// What is asked of a place that is believed.
@@ -93,11 +95,10 @@ class PlaceVerifier {
   explicit PlaceVerifier(const TrackingConfig& tracking, const VerifyLimits& limits = {})
       : tracking_(tracking), limits_(limits) {}
 
-  PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame,
-                      const Eigen::Isometry3d& T_map_candidate);
+  PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame, const MapPose& candidate);
 
   /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best;
-  /// `ambiguous` when they lead to different poses. Else the verdict on the first.
+  /// `ambiguous` when they lead to different poses, or fragments. Else the verdict on the first.
   PlaceVerdict verifyBest(const SurfelMap& map, const WorkingFrame& frame,
                           const std::vector<PlaceCandidate>& candidates, std::size_t most = 6);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,9 +16,9 @@ namespace pf {
 struct PlaceQuestion {
   WorkingFrame frame;                    ///< shares no memory with the frame at work
   std::shared_ptr<const SurfelMap> map;  ///< as it was when the camera was lost
-  Eigen::Isometry3d T_map_last = Eigen::Isometry3d::Identity();  ///< last pose before the loss
+  MapPose last{};                        ///< before the loss
   /// Further poses around which to look, in a map that was loaded.
-  std::vector<Eigen::Isometry3d> elsewhere{};
+  std::vector<MapPose> elsewhere{};
 };
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
@@ -29,7 +30,7 @@ struct LoopQuestion {
   std::optional<std::vector<KeyframeView>> known;
   /// Of all keyframes before this one, in their order, when a correction has moved them; else
   /// empty.
-  std::vector<Eigen::Isometry3d> corrected;
+  std::vector<MapPose> corrected;
   std::shared_ptr<const PlaceQuestion> place;
 };
 
@@ -54,7 +55,18 @@ class LoopWorker {
   LoopAnswer answer(const LoopQuestion& question);
 
  private:
+  /// A fragment of the map that was last searched in.
+  struct Searched {
+    MapPoints points;
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  };
+
   std::optional<PlaceVerdict> findPlace(const PlaceQuestion& question);
+  /// Candidates around all poses of the question, best first, and how many (`most`) are worth
+  /// verifying.
+  std::vector<PlaceCandidate> searchAll(const PlaceQuestion& question, std::size_t& most);
+  /// The fragment of a pose to look around, from the map of the question.
+  const Searched& searched(const PlaceQuestion& question, const MapPose& around);
 
   LoopConfig config_;
   TrackingConfig tracking_;
@@ -62,9 +74,8 @@ class LoopWorker {
   PlaceVerifier verifier_;
   LoopCounts counts_;
   // Of the map that was last searched in.
-  std::weak_ptr<const SurfelMap> map_;  ///< that points_ and up_ are of
-  MapPoints points_;
-  Eigen::Vector3d up_ = Eigen::Vector3d::Zero();
+  std::weak_ptr<const SurfelMap> map_;  ///< that those fragments are of
+  std::map<int, Searched> searched_;
 };
 
 }  // namespace pf

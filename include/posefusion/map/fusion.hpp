@@ -13,6 +13,8 @@ namespace pf {
 
 /// What is known of a frame beside its pixels and its pose.
 struct FusionOptions {
+  int fragment = kFirstFragment;  ///< that the pose is in
+
   /// False while the pose is on probation: nothing then counts against stable surfels.
   bool may_remove_stable = true;
 

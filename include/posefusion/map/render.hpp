@@ -18,7 +18,8 @@ struct RenderOptions {
   bool with_color = false;   ///< fill ModelView::color
   bool only_stable = false;  ///< leave out unstable surfels; else they show where nothing stable is
   SurfelAge age = SurfelAge::active;
-  double max_depth_m = 0;  ///< blocks that are farther as a whole are left out; 0: none are
+  double max_depth_m = 0;         ///< blocks that are farther as a whole are left out; 0: none are
+  int fragment = kFirstFragment;  ///< that the pose is in; nothing of others is seen
 };
 
 /// Splats surfels as discs: each pixel shows, of the discs of the nearest surface that its ray hits

@@ -16,17 +16,20 @@ namespace pf {
 
 class Deformation;
 
-/// The surfels that were made in one cube of space. Fusion may move them a little beyond its faces.
+/// The surfels that were made in one cube of a fragment. Fusion may move them a little beyond its
+/// faces.
 struct SurfelBlock {
+  int fragment = kFirstFragment;
   SurfelArrays surfels;        ///< in the order in which they were made
-  Eigen::AlignedBox3f bounds;  ///< holds all centres (m, map frame)
+  Eigen::AlignedBox3f bounds;  ///< holds all centres (m, map frame of the fragment)
   float largest_radius = 0;    ///< m
   bool any_unstable = false;   ///< false: all are stable
   int changed = -1;            ///< frame of the last change (or somewhat later): what to save
 };
 
 /// The surfels, in blocks, and the frame clock. A frame touches only the blocks in view, so that
-/// its cost does not grow with the map. Has one owner (the mapper); changed by Fuser, add(),
+/// its cost does not grow with the map. Fragments share the clock and the memory, no block: what
+/// works at a place works in one of them. Has one owner (the mapper); changed by Fuser, add(),
 /// removeIf() and deform(). The order of blocks and of surfels in them depends neither on threads
 /// nor on hashing.
 class SurfelMap {
@@ -73,12 +76,24 @@ class SurfelMap {
     }
   }
 
-  /// A copy of all surfels, block by block.
+  /// The same of one fragment.
+  template <typename Visit>
+  void forEachSurfelOf(int fragment, const Visit& visit) const {
+    for (const SurfelBlock& block : blocks_) {
+      if (block.fragment != fragment) continue;
+      for (std::size_t i = 0; i < block.surfels.size(); ++i) visit(block.surfels, i);
+    }
+  }
+
+  /// A copy of all surfels, block by block; consecutive blocks of a fragment are one part.
+  std::vector<FragmentSurfels> parts() const;
+
+  /// The same without the fragments.
   SurfelArrays collect() const;
 
-  /// Puts the surfels into their blocks, in their order, as far as memory lasts; the others are
-  /// refused. Positions that are not finite are left out. Returns how many were added.
-  std::size_t add(const SurfelArrays& surfels);
+  /// Puts surfels of a fragment into their blocks, in their order, as far as memory lasts; the
+  /// others are refused. Positions that are not finite are left out. Returns how many were added.
+  std::size_t add(const SurfelArrays& surfels, int fragment = kFirstFragment);
 
   /// Removes the surfels for which doomed(surfels, i) holds, keeping the order of the others. It is
   /// asked once for each, in the order of forEachSurfel().
@@ -90,6 +105,15 @@ class SurfelMap {
     return removed;
   }
 
+  /// Removes what is in the fragments for which doomed(fragment) holds.
+  template <typename Doomed>
+  void removeFragments(const Doomed& doomed) {
+    for (SurfelBlock& block : blocks_) {
+      if (doomed(block.fragment)) keepOnly({}, block);
+    }
+    countMemory();
+  }
+
   /// Memory (bytes) that the blocks hold, used or reserved; never above memory_limit_mb.
   std::size_t memory() const { return memory_; }
 
@@ -99,10 +123,10 @@ class SurfelMap {
   void clear();
 
   /// Takes up a saved map: these surfels, and the number of its last frame.
-  void restore(const SurfelArrays& surfels, int frame) {
+  void restore(const std::vector<FragmentSurfels>& parts, int frame) {
     clear();
     frame_ = frame;
-    add(surfels);
+    for (const FragmentSurfels& part : parts) add(part.surfels, part.fragment);
   }
 
  private:
@@ -111,11 +135,22 @@ class SurfelMap {
 
   static constexpr float kMostOutweighed = 24;  // frames
 
+  /// A cube of a fragment, counted along each axis from its origin.
+  struct Cell {
+    std::int32_t fragment = kFirstFragment, x = 0, y = 0, z = 0;
+    bool operator==(const Cell& other) const {
+      return fragment == other.fragment && x == other.x && y == other.y && z == other.z;
+    }
+  };
+  struct CellHash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+
   /// The cube around a point, and the block of it, made when it is new; none when there is no
   /// memory for it.
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
-  std::uint64_t cellAt(float x, float y, float z) const;
-  std::uint32_t blockAt(float x, float y, float z);
+  Cell cellAt(int fragment, float x, float y, float z) const;
+  std::uint32_t blockAt(const Cell& cell);
   /// Reserves memory in a block; returns for how many of `count` more surfels there is room.
   std::size_t makeRoom(SurfelBlock& block, std::size_t count);
   /// Sums up the memory anew, after surfels were removed.
@@ -128,8 +163,8 @@ class SurfelMap {
 
   MapConfig config_;
   float block_side_m_;
-  std::deque<SurfelBlock> blocks_;                          // a deque moves none when it grows
-  std::unordered_map<std::uint64_t, std::uint32_t> index_;  // by packed cell; never iterated
+  std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
+  std::unordered_map<Cell, std::uint32_t, CellHash> index_;
   int frame_ = -1;
   std::size_t memory_ = 0;
   std::size_t refused_ = 0;

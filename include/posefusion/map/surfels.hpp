@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "posefusion/core/map_pose.hpp"
+
 namespace pf {
 
 /// Surfels as structure of arrays, in the map frame. One disc each: position (m), unit normal, mean
@@ -46,6 +48,13 @@ struct SurfelArrays {
     });
   }
 
+  /// Adds all of another's surfels.
+  void append(const SurfelArrays& from) {
+    forEachArray(from, [](auto& array, const auto& other) {
+      array.insert(array.end(), other.begin(), other.end());
+    });
+  }
+
   static constexpr std::size_t bytesPerSurfel() { return 12 * sizeof(float) + 3 * sizeof(int32_t); }
 
  private:
@@ -58,5 +67,17 @@ struct SurfelArrays {
   static constexpr Integers kIntegers[] = {&SurfelArrays::created, &SurfelArrays::seen,
                                            &SurfelArrays::violations};
 };
+
+/// Surfels of one fragment of the map.
+struct FragmentSurfels {
+  int fragment = kFirstFragment;
+  SurfelArrays surfels;
+};
+
+inline std::size_t surfelsIn(const std::vector<FragmentSurfels>& parts) {
+  std::size_t count = 0;
+  for (const FragmentSurfels& part : parts) count += part.surfels.size();
+  return count;
+}
 
 }  // namespace pf

@@ -10,11 +10,11 @@
 
 namespace pf {
 
-/// The blocks, in the order of the map, that may hold a disc in the camera's picture not farther
-/// than `max_depth_m` along the optical axis (0: any distance). None in view is missed; some that
-/// are not may be named. Rendering, fusion and cleaning all go by this list.
+/// The blocks of the pose's fragment, in the order of the map, that may hold a disc in the camera's
+/// picture not farther than `max_depth_m` along the optical axis (0: any distance). None in view is
+/// missed; some that are not may be named. Rendering, fusion and cleaning all go by this list.
 std::vector<std::uint32_t> visibleBlocks(const SurfelMap& map, const PinholeCamera& camera,
-                                         const Eigen::Isometry3d& T_map_camera, double max_depth_m);
+                                         const MapPose& pose, double max_depth_m);
 
 /// Some surfels of one block, [begin, end): the unit of parallel work.
 struct SurfelRange {

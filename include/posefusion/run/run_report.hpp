@@ -59,16 +59,18 @@ class RunReport {
   /// Nothing without truth, or when fewer than three poses have a true one.
   std::optional<RunErrors> errors() const;
 
-  /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops),
-  /// trajectory_live.txt (as they were told at the time), map.ply, summary.json, map.png and
-  /// people.png; the first three in the frame that `T_world_map` leads to. Throws InputError
-  /// naming the file.
-  void write(const std::string& folder, const SurfelMap& map,
-             const Eigen::Isometry3d& T_world_map = bodyFromOptical()) const;
+  /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops) and
+  /// trajectory_live.txt (as they were told at the time), in the frame that `T_world_map` leads to.
+  /// Throws InputError naming the file.
+  void writeTrajectories(const std::string& folder,
+                         const Eigen::Isometry3d& T_world_map = bodyFromOptical()) const;
 
-  /// Of these, summary.json and the pictures. `map` lies in the frame of the trajectory; `surfels`
-  /// are in map.ply.
-  void writeSummary(const std::string& folder, const SurfelMap& map, std::size_t surfels) const;
+  /// summary.json; `surfels`: savedSurfels() of the map. Throws InputError naming the file.
+  void writeSummary(const std::string& folder, std::size_t surfels) const;
+
+  /// map.png and people.png. `map` lies in the frame of the trajectory. Throws InputError naming
+  /// the file.
+  void writePictures(const std::string& folder, const SurfelMap& map) const;
 
   /// A few lines for people.
   std::string table() const;

@@ -29,7 +29,7 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
 
 /// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
 /// views that differ: a view may be older than the frame before (live, or where that was not
-/// fused).
+/// fused). Two views of different fragments tell of no motion.
 class MotionPredictor {
  public:
   /// T_view_camera for the frame at `stamp_ns` given the newest view.
@@ -39,7 +39,7 @@ class MotionPredictor {
  private:
   struct StampedPose {
     std::int64_t stamp_ns = 0;
-    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    MapPose pose;
   };
 
   int frames_ = 0;  // views seen

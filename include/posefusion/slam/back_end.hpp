@@ -17,10 +17,9 @@ namespace pf {
 struct FusedFrame {
   std::int64_t stamp_ns = 0;
   std::int32_t map_frame = 0;  ///< SurfelMap::frame() that its surfels have
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  MapPose pose;
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
-  bool is_return = false;        ///< found again: tied to the nearest keyframe, not to the last
-  bool begins_fragment = false;  ///< tied to none
+  bool is_return = false;  ///< found again: tied to the nearest keyframe, not to the last
   /// Of a return, where it is measured: the pose had the camera not been lost but carried on.
   PosePrior carried;
 };
@@ -38,16 +37,19 @@ class BackEnd {
         loaded_frames_(frames_.size()),
         loaded_keyframes_(graph_.keyframes().size()) {}
 
-  /// The keyframe that saw the map from about this pose.
-  int nearest(const Eigen::Isometry3d& T_map_camera) const;
+  /// The keyframe that saw the fragment from about this pose; -1: the fragment has none.
+  int nearest(const MapPose& pose) const;
 
-  /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1. A camera
-  /// may be lost because drift has laid the place where it arrives over another; having returned
-  /// there, it closes a loop by the way that it came, which waits for the next close().
+  /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1. The
+  /// first one of a fragment is tied to no other; one in another fragment than the last is a
+  /// return. A camera may be lost because drift has laid the place where it arrives over another;
+  /// having returned there, it closes a loop by the way that it came, which waits for the next
+  /// close().
   int add(const FusedFrame& frame);
 
-  /// Keeps the pose of a located frame (fused or not); nothing before the first keyframe.
-  void record(std::int64_t stamp_ns, const Eigen::Isometry3d& T_map_camera);
+  /// Keeps the pose of a located frame (fused or not), by the last keyframe of its fragment;
+  /// nothing before the first.
+  void record(std::int64_t stamp_ns, const MapPose& pose);
 
   /// Closes loops between keyframes, and joins the fragments that they lead between. Returns what
   /// the map is to follow, in that order.
@@ -64,7 +66,7 @@ class BackEnd {
 
   const PoseGraph& graph() const { return graph_; }
   /// The poses of the keyframes, in their order.
-  std::vector<Eigen::Isometry3d> keyframePoses() const;
+  std::vector<MapPose> keyframePoses() const;
 
   struct Counts {
     std::size_t accepted = 0;  ///< corrections of the graph

@@ -36,33 +36,37 @@ struct Location {
   bool located = false;
   bool is_return = false;         ///< found again with this frame
   bool is_recent_return = false;  ///< found again a short time ago: the map must not lose by it
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  int fragment = kFirstFragment;
+  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< in the fragment
   TrackingResult tracking;
   SparseMotion motion;
   /// Where the camera would be by its corners' motion alone since the last fused frame; measured
   /// where many of them told of every step. Of a return, it tells what the loss has torn apart.
   PosePrior carried;
   std::string detail;
+
+  MapPose pose() const { return {fragment, T_map_camera}; }
 };
 
 /// Finds each frame in the map: a prior from the corners' motion (or constant velocity where there
 /// are too few), alignment from it and, where that fails, from other starts, and a verdict. Carries
 /// the pose by dead reckoning while alignment fails. Coming back after a loss takes proof over
-/// several frames. Not thread safe.
+/// several frames. Works in one fragment of the map at a time. Not thread safe.
 class Localiser {
  public:
   explicit Localiser(const TrackingConfig& config);
 
   /// The first frame of a map, or of a fragment of it: what was before is forgotten.
-  Location begin(const WorkingFrame& frame, std::int64_t stamp_ns,
-                 const Eigen::Isometry3d& T_map_camera, const Brightness& brightness = {});
+  Location begin(const WorkingFrame& frame, std::int64_t stamp_ns, const MapPose& pose,
+                 const Brightness& brightness = {});
 
-  /// A loaded map: lost, last known at `T_map_camera`. The grey levels of the map follow from those
-  /// of frames by `brightness`.
-  void beginLost(const Eigen::Isometry3d& T_map_camera, const Brightness& brightness);
+  /// A loaded map: lost, last known at `pose`. The grey levels of the map follow from those of
+  /// frames by `brightness`.
+  void beginLost(const MapPose& pose, const Brightness& brightness);
 
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
-  /// the last fused frame. A `forced` frame (see BlurScore) is not believed enough to be fused.
+  /// the last fused frame; `render` draws fragment(). A `forced` frame (see BlurScore) is not
+  /// believed enough to be fused.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                   bool forced, const ModelView& view, const MapRenderers& render);
 
@@ -72,18 +76,22 @@ class Localiser {
   /// Between the map and the last frame that was believed.
   const Brightness& brightness() const { return brightness_; }
   /// The last pose of a located frame.
-  const Eigen::Isometry3d& lastPose() const { return T_map_located_; }
+  const MapPose& lastPose() const { return located_; }
+  /// That the next frame is looked for in: that of the last pose or, while lost, of a suggested
+  /// one.
+  int fragment() const { return previous_.fragment; }
 
   /// The pose by the corners' motion alone since the beginning: what happens between two frames can
   /// be told from it even while the camera is lost.
   const Eigen::Isometry3d& reckonedPose() const { return T_reckoned_; }
 
-  /// Follows a correction of the map.
-  void move(const Eigen::Isometry3d& T_new_old);
+  /// Follows a correction of the map, which moves lastPose() by `T_new_old` and into `fragment`. A
+  /// place suggested in another fragment than that is given up.
+  void move(const Eigen::Isometry3d& T_new_old, int fragment);
 
-  /// While lost: the camera was at `T_map_camera` when reckonedPose() was `T_reckoned`. Believed
-  /// once some frames in a row agree.
-  void suggest(const Eigen::Isometry3d& T_map_camera, const Eigen::Isometry3d& T_reckoned);
+  /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Believed once some
+  /// frames in a row agree.
+  void suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned);
 
   /// From the next frame on; what is known stays.
   void set(const TrackingConfig& config) { config_ = config; }
@@ -94,6 +102,7 @@ class Localiser {
   /// The frame before: what the next prediction starts from.
   struct Previous {
     std::int64_t stamp_ns = 0;
+    int fragment = kFirstFragment;
     Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
     Matrix6d covariance =
         Matrix6d::Zero();  ///< twist in the camera frame, since the last trusted one
@@ -125,6 +134,7 @@ class Localiser {
                      const Moment& moment, const ViewRenderer& render) const;
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
              const MapRenderers& render);
+  void goBackToLast();
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
                 const Location& location, std::int64_t stamp_ns);
 
@@ -133,7 +143,7 @@ class Localiser {
   Previous previous_;
   PosePrior carried_;  ///< see Location
   Landmarks landmarks_;
-  Eigen::Isometry3d T_map_located_ = Eigen::Isometry3d::Identity();
+  MapPose located_;  ///< see lastPose()
   Eigen::Isometry3d T_reckoned_ = Eigen::Isometry3d::Identity();
   Brightness brightness_;
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that may be fused

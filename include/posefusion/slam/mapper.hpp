@@ -56,6 +56,10 @@ class Mapper {
   /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
   void load(SavedMap map, MapUse use);
 
+  /// The clock was put back: stamps may begin anew. The map goes on; the camera is lost until it is
+  /// found in it. Without a map: as reset().
+  void restartClock();
+
   /// From the next frame on. Throws InputError where there is no map to localise in.
   void setUse(MapUse use);
 

@@ -18,7 +18,7 @@ namespace pf {
 struct SavedMap {
   PinholeCamera camera;  ///< of the frames, rectified
   Brightness brightness;
-  SurfelArrays surfels;
+  std::vector<FragmentSurfels> surfels;          ///< SurfelMap::parts()
   int frame = -1;                                ///< SurfelMap::frame()
   std::optional<Eigen::Isometry3d> T_world_map;  ///< Mapper::place()
   std::vector<Keyframe> keyframes;

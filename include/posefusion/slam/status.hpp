@@ -20,7 +20,7 @@ enum class TrackingState {
 
 /// What became of a frame, and why it was not fused.
 enum class FrameOutcome {
-  fused,          ///< or, where the map must not change, would have been
+  fused,          ///< believed, and taken into the map
   bad_input,      ///< sizes, encodings or stamps that cannot be used
   blurred,        ///< dropped by the gate
   no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)
@@ -31,8 +31,14 @@ enum class FrameOutcome {
   disagrees,      ///< alignment and corners tell of different motions
   seen_through,   ///< the frame sees through too much of the model
   unproven,       ///< after a loss: looks right, but not for long enough
-  forced          ///< passed the blur gate only because too many were dropped before it
+  forced,         ///< passed the blur gate only because too many were dropped before it
+  located         ///< believed as one that is fused, in a map that must not change
 };
+
+/// Whether the frame was believed, so that there is nothing to complain of.
+inline bool isGood(FrameOutcome outcome) {
+  return outcome == FrameOutcome::fused || outcome == FrameOutcome::located;
+}
 
 std::string_view name(TrackingState state);
 std::string_view name(FrameOutcome outcome);
@@ -42,12 +48,13 @@ struct FrameStatus {
   std::int64_t stamp_ns = 0;
   TrackingState state = TrackingState::initializing;
   FrameOutcome outcome = FrameOutcome::fused;
-  bool located = false;  ///< the pose is this frame's, in fragment 0; else no pose is known
-  int fragment = 0;      ///< piece of the map that the pose is in (see graph/fragments.hpp)
+  bool located = false;  ///< the pose is this frame's, in the first fragment; else none is known
+  int fragment = kFirstFragment;  ///< that the pose is in
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
-  SparseMotion motion;  ///< since the frame before
-  std::string detail;   ///< the reason in words
+  SparseMotion motion;           ///< since the frame before
+  std::string detail;            ///< the reason in words
+  bool is_other_camera = false;  ///< refused because it is not of the map's camera
   std::size_t surfels = 0;
   int map_version = 0;     ///< number of corrections by loops so far
   bool map_full = false;   ///< the memory limit keeps new surfels out

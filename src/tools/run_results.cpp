@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run_results.hpp"
+
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/map_file.hpp"
+
+namespace pf {
+namespace {
+
+constexpr char kJournal[] = "trajectory.partial.txt";
+// Trajectories and summary of an hour at 30 Hz, 130 bytes a pose each.
+constexpr std::int64_t kReserve_bytes = 32'000'000;
+
+}  // namespace
+
+RunResults::RunResults(const RunOptions& options, const Pipeline& pipeline)
+    : pipeline_(pipeline),
+      folder_(options.output, RunFolder::Name::partial),
+      reserve_(folder_.file("reserve"), kReserve_bytes),
+      journal_(folder_.file(kJournal), "the run is not finished"),
+      map_(options, folder_.path(), pipeline.mapper()),
+      observers_(options, folder_.path(), pipeline.mapper().map()) {}
+
+std::string RunResults::add(const ProcessedFrame& frame) {
+  observers_.add(frame);
+  const std::string trouble = disturbance(frame);
+  if (trouble.empty() || std::exchange(is_disturbed_, true)) return {};
+  return trouble + "; the run goes on and tries again";
+}
+
+std::string RunResults::disturbance(const ProcessedFrame& frame) {
+  std::string text = map_.add(frame);
+  const FrameStatus& status = frame.status;
+  if (status.located &&
+      !journal_.add({status.stamp_ns, pipeline_.mapper().worldFromMap() * status.T_map_camera}) &&
+      text.empty()) {
+    text = folder_.file(kJournal) + " cannot be written (disk full?)";
+  }
+  return text;
+}
+
+bool RunResults::attempt(const std::function<void()>& write) {
+  try {
+    write();
+    return true;
+  } catch (const std::exception& error) {
+    failed_.emplace_back(error.what());
+    return false;
+  }
+}
+
+void RunResults::finish(RunReport& report) {
+  const Mapper& mapper = pipeline_.mapper();
+  reserve_.release();
+  // What is small and cannot be had again comes first.
+  const bool has_poses =
+      attempt([&] { report.writeTrajectories(folder_.path(), mapper.worldFromMap()); });
+  if (has_poses) journal_.remove();
+  attempt([&] { observers_.finish(report); });
+  attempt([&] { report.writeSummary(folder_.path(), savedSurfels(mapper.map())); });
+  attempt([&] { map_.finish(); });
+  attempt([&] { saveMap(folder_.file("map.ply"), mapper.map(), mapper.worldFromMap()); });
+  attempt([&] { report.writePictures(folder_.path(), mapper.map()); });
+  if (failed_.empty()) {
+    folder_.finish();
+    if (!report.trajectory().empty()) folder_.makeLatest();
+    return;
+  }
+  std::string text = "not all of the results could be written; the others are in " + path();
+  for (const std::string& failure : failed_) text += "\n  " + failure;
+  throw InputError(text);
+}
+
+}  // namespace pf

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Map files of version 1, where fragment k lay at x = 500 m * k.
+#include <gtest/gtest.h>
+
+#include "example_map.hpp"
+#include "first_map_version.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+
+namespace pf {
+namespace {
+
+constexpr double kBetween_m = 500.0;
+
+/// Keyframes of four frames: the first; one that begins fragment 1, and one tracked on from there;
+/// and one tracked on from the first to beyond 250 m, where version 1 took it for fragment 1.
+struct OldMap {
+  MapUpdate update = ExampleMap().update;
+
+  OldMap() {
+    const std::vector<double> x = {0.1, kBetween_m, kBetween_m + 0.4, 251.0};
+    update.keyframes.clear();
+    update.constraints.clear();
+    for (int i = 0; i < 4; ++i) {
+      Keyframe k;
+      k.id = i;
+      k.fragment = i == 0 ? 0 : 1;
+      k.stamp_ns = 100 + i;
+      k.map_frame = 2 * i;
+      k.T_map_camera.translation() << x[static_cast<std::size_t>(i)], 0.5, -0.25;
+      update.keyframes.push_back(k);
+    }
+    track(1, 2);
+    track(0, 3);
+    update.frames = {{103, {2, Eigen::Isometry3d::Identity()}}};
+    update.blocks.clear();
+    for (int frame = 0; frame < 8; ++frame) addBlock(frame, x[static_cast<std::size_t>(frame / 2)]);
+    update.block_count = static_cast<std::uint32_t>(update.blocks.size());
+  }
+
+  void track(int from, int to) {
+    PoseConstraint step;
+    step.kind = ConstraintKind::odometry;
+    step.from = from;
+    step.to = to;
+    step.covariance = 1e-4 * Matrix6d::Identity();
+    update.constraints.push_back(step);
+  }
+
+  /// One surfel, half a metre beside the camera.
+  void addBlock(int frame, double x) {
+    BlockRecord block;
+    block.index = static_cast<std::uint32_t>(frame);
+    block.surfels.resize(1);
+    block.surfels.x[0] = static_cast<float>(x + 0.5);
+    block.surfels.y[0] = 0.25F;
+    block.surfels.created[0] = block.surfels.seen[0] = frame;
+    update.blocks.push_back(block);
+  }
+
+  std::string saved(const TemporaryFolder& folder) const {
+    std::string path = pf::saved(folder, update, "old.pfdb");
+    makeFirstVersion(path);
+    return path;
+  }
+};
+
+/// What a version 1 file should be read as.
+void expectUpgraded(const MapReader& reader) {
+  const std::vector<int> fragments = {0, 1, 1, 0};
+  const std::vector<double> x = {0.1, 0.0, 0.4, 251.0};
+  const auto keyframes = reader.content().keyframes;
+  ASSERT_EQ(keyframes.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(keyframes[i].fragment, fragments[i]) << i;
+    EXPECT_NEAR(keyframes[i].T_map_camera.translation().x(), x[i], 1e-12) << i;
+    EXPECT_EQ(keyframes[i].T_map_camera.translation().y(), 0.5) << i;
+  }
+  std::size_t count = 0;
+  for (const FragmentSurfels& part : reader.surfels()) {
+    for (std::size_t i = 0; i < part.surfels.size(); ++i, ++count) {
+      const auto keyframe = static_cast<std::size_t>(part.surfels.created[i] / 2);
+      EXPECT_EQ(part.fragment, fragments[keyframe]) << part.surfels.created[i];
+      EXPECT_NEAR(part.surfels.x[i], x[keyframe] + 0.5, 4e-5) << part.surfels.created[i];
+      EXPECT_EQ(part.surfels.y[i], 0.25F);
+    }
+  }
+  EXPECT_EQ(count, 8U);
+}
+
+TEST(MapUpgrade, AFileOfVersion1HasItsFragmentsApart) {
+  const TemporaryFolder folder;
+  const std::string path = OldMap().saved(folder), before = readFile(path);
+  expectUpgraded(MapReader(path));
+  EXPECT_TRUE(readFile(path) == before) << "reading changes nothing";
+}
+
+TEST(MapUpgrade, AFileOfVersion1GoesOnAsOneOfVersion2) {
+  const TemporaryFolder folder;
+  const std::string path = OldMap().saved(folder);
+  MapUpdate update = OldMap().update;
+  {
+    const MapReader reader(path);
+    static_cast<MapContent&>(update) = reader.content();
+    SurfelMap map((MapConfig()));
+    map.restore(reader.surfels(), update.frame);
+    update.blocks = changedBlocks(map, -1);
+    update.block_count = static_cast<std::uint32_t>(map.blocks().size());
+  }
+  update.frames.clear();
+  { const MapWriter unused(path, MapWriter::Mode::extend); }
+  expectUpgraded(MapReader(path));  // still whole: nothing was written
+  MapWriter(path, MapWriter::Mode::extend).write(update);
+  const MapReader reader(path);
+  expectUpgraded(reader);
+  EXPECT_EQ(reader.content().frames.size(), 1U) << "what was there stays";
+  EXPECT_EQ(reader.counts().images, 2U);
+  MapWriter(path, MapWriter::Mode::extend).write(update);
+  expectUpgraded(MapReader(path));
+}
+
+TEST(MapUpgrade, AFileOfVersion1WithOtherTablesIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = OldMap().saved(folder);
+  runSql(path, "DROP TABLE blocks; CREATE TABLE blocks(id INTEGER PRIMARY KEY)");
+  EXPECT_NE(errorOf([&] { readAll(path); }).find("other tables"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pf
