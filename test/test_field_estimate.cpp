@@ -68,6 +68,21 @@ TEST(FieldEstimate, theOrderOfTheViewsAndThreadsDoNotMatter) {
   EXPECT_EQ(estimate.kept_out.significance, distortedEstimate().kept_out.significance);
 }
 
+TEST(FieldEstimate, viewsOfDifferentFragmentsMakeNoPair) {
+  // Each fragment has coordinates of its own: poses of two of them say nothing of each other.
+  auto views = distortedViews();
+  std::vector<ViewSurface> surfaces;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].fragment = static_cast<int>(i % 2);
+    surfaces.emplace_back(views[i]);
+  }
+  const std::vector<ViewPair> pairs = overlappingPairs(surfaces);
+  EXPECT_GT(pairs.size(), 10U);
+  for (const ViewPair& pair : pairs) {
+    EXPECT_EQ(surfaces[pair.from].fragment(), surfaces[pair.to].fragment());
+  }
+}
+
 TEST(FieldEstimate, saysWhatIsMissing) {
   test::RoomView like;
   like.field = test::roomField();
