@@ -52,6 +52,8 @@ struct OldMap {
     BlockRecord block;
     block.index = static_cast<std::uint32_t>(frame);
     block.surfels.resize(1);
+    block.surfels.nz[0] = -1;
+    block.surfels.radius[0] = 0.01F;
     block.surfels.x[0] = static_cast<float>(x + 0.5);
     block.surfels.y[0] = 0.25F;
     block.surfels.created[0] = block.surfels.seen[0] = frame;

@@ -87,7 +87,8 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
 
   ASSERT_EQ(run({"covariance", sequence(), status, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_EQ(nlohmann::json::parse(said).at("motions"), kFrames - 1);
-  EXPECT_EQ(run({"covariance", sequence(), out + "/latest/trajectory.txt"}, "posefusion_evaluate"), 1);
+  EXPECT_EQ(run({"covariance", sequence(), out + "/latest/trajectory.txt"}, "posefusion_evaluate"),
+            1);
   EXPECT_TRUE(hasSaid("is no table of posefusion_run --save-status")) << said;
   EXPECT_EQ(run({own.str(), out}, "posefusion_evaluate"), 1);
   EXPECT_TRUE(hasSaid("has no groundtruth.txt")) << said;

@@ -13,7 +13,8 @@ namespace pf {
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json) {
   std::vector<UncertainPose> poses;
   for (const StatusRow& row : loadStatus(status)) {
-    if (row.outcome == "fused" || row.outcome == "located") poses.push_back({row.stamp_ns, row.T_map_camera, row.covariance});
+    if (row.outcome == "fused" || row.outcome == "located")
+      poses.push_back({row.stamp_ns, row.T_map_camera, row.covariance});
   }
   const CovarianceShare share = checkCovariances(loadSequenceTruth(truth).trajectory, poses);
   if (json) {
