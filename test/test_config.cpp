@@ -86,6 +86,9 @@ TEST(Config, FilesAreCheckedAsWholes) {
   EXPECT_EQ(config.blur.threshold, 5.0);
   EXPECT_NE(error("blur: {threshold: 6, threshold: 7}").find("x.yaml: threshold is given twice"),
             std::string::npos);
+  EXPECT_NE(error("blur: &a {threshold: *a}").find("x.yaml: is nested without end"),
+            std::string::npos)
+      << "it overflowed the stack";
   EXPECT_NE(error("blur: 3").find("x.yaml: blur is '3', expected keys with values"),
             std::string::npos);
   EXPECT_NE(error("blur: [").find("x.yaml: is not YAML"), std::string::npos);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "posefusion/calibration/depth_correction.hpp"
 #include "simulator/color_sensor.hpp"
+#include "simulator/depth_distortion.hpp"
 #include "simulator/depth_sensor.hpp"
 
 namespace pf::simulator {
@@ -45,6 +47,32 @@ TEST(SimulatorDepth, StepsGrowWithTheSquareOfTheDistance) {
   cv::minMaxLoc(depth, &low, &high, nullptr, nullptr, depth > 0);
   EXPECT_EQ(low, high);  // one step for a flat wall
   EXPECT_NEAR(low, 2000.0, 500.0 * quantumM(2.0, quiet, 525) + 1.0);
+}
+
+TEST(SimulatorDepth, TheTrueFieldUndoesTheDistortion) {
+  DepthConfig config;
+  config.axial = config.lateral = config.dropouts = 0.0;
+  config.disparity_steps = 1024.0;  // as good as none
+  for (const int specimen : {1, 5}) {
+    config.specimen = specimen;
+    const DepthField field = trueField(config, xtion());
+    for (const float z : {1.5F, 2.5F, 4.0F}) {
+      const cv::Mat depth = sense(wall(z), config);
+      cv::Mat corrected, off;
+      DepthCorrection(field, depth.size()).apply(depth, 0.001, corrected);
+      cv::absdiff(corrected, cv::Scalar(1000.0 * static_cast<double>(z)), off);
+      off.setTo(0, depth == 0);
+      double most = 0, before = 0;
+      cv::minMaxLoc(off, nullptr, &most);
+      cv::absdiff(depth, cv::Scalar(1000.0 * static_cast<double>(z)), off);
+      off.setTo(0, depth == 0);
+      cv::minMaxLoc(off, nullptr, &before);
+      EXPECT_GT(before, 8.0) << z;
+      EXPECT_LT(most, 3.0) << z << ", specimen " << specimen;
+    }
+  }
+  config.noise = false;
+  EXPECT_EQ(trueField(config, xtion()).rms(), 0.0);
 }
 
 TEST(SimulatorDepth, NoiseOnAWallIsTheModels) {

@@ -29,16 +29,19 @@ std::string nameOf(const std::string& prefix) {
   return prefix.substr(0, prefix.find_last_not_of(".:/ ") + 1);
 }
 
-void refuseTwins(const YAML::Node& node, const std::string& origin) {
+/// Also what holds itself through an alias, which has no end.
+void refuseTwins(const YAML::Node& node, const std::string& origin, int depth = 0) {
+  constexpr int kDeepest = 64;  // far more maps within maps than any file of ours has
+  if (depth > kDeepest) throw InputError(origin + ": is nested without end");
   std::set<std::string> keys;
   for (const auto& entry : node) {
     if (node.IsSequence()) {
-      refuseTwins(entry, origin);
+      refuseTwins(entry, origin, depth + 1);
       continue;
     }
     const auto key = entry.first.as<std::string>("");
     if (!keys.insert(key).second) throw InputError(origin + ": " + key + " is given twice");
-    refuseTwins(entry.second, origin);
+    refuseTwins(entry.second, origin, depth + 1);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
+#include "simulator/depth_distortion.hpp"
 #include "simulator/random.hpp"
 
 namespace pf::simulator {
@@ -140,37 +141,6 @@ double quantumM(double z_m, const DepthConfig& config, double focal_px) {
 }
 
 namespace {
-
-/// Relative error of depth for each 2 m of it: smooth over the picture, fixed for a camera. About
-/// one per cent at 2 m is what Teichman, Miller and Thrun ("Unsupervised Intrinsic Calibration of
-/// Depth Sensors via SLAM", 2013) find before calibration.
-class Distortion {
- public:
-  Distortion(const DepthConfig& config, const PinholeCamera& camera) {
-    const auto phase = [&](std::uint32_t i) {
-      return 6.2832F * uniform(hash(static_cast<std::uint32_t>(config.specimen), i));
-    };
-    const float height = kUsual * static_cast<float>(config.distortion);
-    for (int col = 0; col < camera.width; ++col) {
-      const float u = 6.2832F * static_cast<float>(col) / static_cast<float>(camera.width);
-      wide_.push_back(height * std::sin(0.7F * u + phase(1U)));
-      narrow_.push_back(0.6F * height * std::sin(1.9F * u + phase(2U)));
-    }
-    for (int row = 0; row < camera.height; ++row) {
-      const float v = 4.7F * static_cast<float>(row) / static_cast<float>(camera.height);
-      tall_.push_back(std::cos(0.8F * v + phase(3U)));
-      low_.push_back(std::cos(2.1F * v + phase(4U)));
-    }
-  }
-  float at(int col, int row) const {
-    const auto c = static_cast<std::size_t>(col), r = static_cast<std::size_t>(row);
-    return wide_[c] * tall_[r] + narrow_[c] * low_[r];
-  }
-
- private:
-  static constexpr float kUsual = 0.010F;
-  std::vector<float> wide_, narrow_, tall_, low_;
-};
 
 /// One frame's constants for the pixels.
 struct Sensing {

@@ -2,9 +2,11 @@
 #include <filesystem>
 
 #include "posefusion/core/stamps.hpp"
+#include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/tum_writer.hpp"
+#include "simulator/depth_distortion.hpp"
 #include "simulator/output.hpp"
 #include "simulator/truth.hpp"
 #include "simulator/truth_files.hpp"
@@ -20,6 +22,10 @@ class TumOutput : public Output {
       : folder_(folder), writer_(folder, simulation.scenario().camera, 1000.0) {
     for (const char* part : {"mask", "person_mask"}) makeFolder(folder_ / part);
     saveSceneMesh(folder_ / "scene.ply", simulation.world());
+    const Scenario& scenario = simulation.scenario();
+    saveCalibration(folder_ / "depth_field.yaml",
+                    {"specimen " + std::to_string(scenario.depth.specimen), scenario.camera,
+                     trueField(scenario.depth, scenario.camera)});
     saveScenePoints(folder_ / "scene_points.ply", simulation.world(), 0.03);
   }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/calibrated_source.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run.hpp"
 #include "posefusion/run/run_report.hpp"
@@ -125,7 +126,8 @@ int run(const RunOptions& options) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
     cv::setNumThreads(options.threads);
   }
-  const auto source = posefusion_ros::openInput(options.input, options.reading);
+  const auto source =
+      calibrated(posefusion_ros::openInput(options.input, options.reading), options.calibration);
   RunReport report(options.config);
   report.setTruth(truthFor(options, *source));
   Pipeline pipeline(options.config, detectorFor(options, *source));

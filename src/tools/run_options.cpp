@@ -93,6 +93,8 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
       ->check(wholeNumber(kMostThreads));
   app.add_option("--truth", options.truth, "true trajectory, TUM format");
   app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
+  app.add_option("--calibration", options.calibration,
+                 "file of posefusion_calibrate: the depth of each frame is corrected by it");
   auto* map = app.add_option("--map", options.map_file,
                              "map file (*.pfdb) to begin in: the camera is looked for there");
   auto* localize = app.add_flag("--localize-only", options.localize_only,

@@ -34,6 +34,8 @@ class YamlMap {
   std::string word(const std::string& key, const std::string& otherwise,
                    const std::vector<std::string>& words);
   double angle(const std::string& key, double otherwise_rad);  ///< degrees in the file
+  /// Exactly so many numbers; throws where the key is missing.
+  std::vector<double> numbers(const std::string& key, std::size_t count);
   Eigen::Vector2d vector2(const std::string& key, const Eigen::Vector2d& otherwise);
   Eigen::Vector3d vector3(const std::string& key, const Eigen::Vector3d& otherwise);
   std::optional<Eigen::Vector3d> maybeVector3(const std::string& key);
@@ -51,8 +53,6 @@ class YamlMap {
 
  private:
   YAML::Node get(const std::string& key);
-  std::vector<double> numbers(const std::string& key, std::size_t count);
-
   YAML::Node node_;
   std::string prefix_;
   std::set<std::string> used_;

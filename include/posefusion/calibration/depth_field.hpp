@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace pf {
+
+/// How much each node of a grid counts at a place in the image, and how that changes with the
+/// place.
+struct FieldWeights {
+  static constexpr std::size_t kNodes = 16;
+  std::array<int, kNodes> node{};  ///< indices, row by row
+  std::array<double, kNodes> weight{};
+  std::array<double, kNodes> by_x{}, by_y{};  ///< derivatives by x and y
+};
+
+/// The smooth systematic error of a depth camera: 1/z_true = 1/z_measured + d(x, y), d in 1/m. To
+/// first order it is what a wrong disparity does. A cubic B-spline: the nodes are its coefficients;
+/// those of the outermost rows and columns lie one step outside of the image. Places are
+/// x = (u + 0.5) / width, y = (v + 0.5) / height, so that one field holds for all sizes of the same
+/// image.
+class DepthField {
+ public:
+  static constexpr int kColumns = 12, kRows = 9;
+
+  /// No error.
+  DepthField() : DepthField(kColumns, kRows) {}
+  DepthField(int columns, int rows)
+      : DepthField(columns, rows, std::vector<double>(nodeCount(columns, rows), 0.0)) {}
+
+  /// `nodes_per_m`: row by row, 1/m. Throws std::invalid_argument for fewer than 4 columns or rows,
+  /// another number of nodes, or numbers that are not finite.
+  DepthField(int columns, int rows, std::vector<double> nodes_per_m);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  const std::vector<double>& nodes() const { return nodes_; }
+
+  /// d (1/m). Places outside of the image count as on its border.
+  double at(double x, double y) const;
+  double at(const FieldWeights& weights) const;
+  FieldWeights weights(double x, double y) const;
+
+  /// z_true (m) of a measured depth; 0 where there is none.
+  double corrected(double z_m, double x, double y) const;
+
+  double mean() const;         ///< of the nodes, 1/m
+  double rms() const;          ///< over the image, 1/m
+  DepthField centred() const;  ///< less its mean: the gauge, as the mean cannot be observed
+
+  /// The field that distorts as this one corrects.
+  DepthField inverse() const;
+
+  /// This field, then another: what both together correct. Throws std::invalid_argument for another
+  /// grid.
+  DepthField then(const DepthField& next) const;
+
+ private:
+  static std::size_t nodeCount(int columns, int rows);
+
+  int columns_, rows_;
+  std::vector<double> nodes_;
+};
+
+/// The field nearest to a function of (x, y) in [0, 1].
+DepthField fittedField(int columns, int rows, const std::function<double(double, double)>& d);
+
+/// How alike two fields are over the image, on 64 x 48 places, their means aside.
+struct FieldComparison {
+  double correlation = 0;         ///< 0 where one of them is flat
+  double rms_a = 0, rms_b = 0;    ///< 1/m
+  double rms_difference = 0;      ///< 1/m
+  double mean_a = 0, mean_b = 0;  ///< 1/m
+};
+
+FieldComparison compare(const DepthField& a, const DepthField& b);
+
+}  // namespace pf

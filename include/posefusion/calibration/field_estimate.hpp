@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "posefusion/calibration/depth_field.hpp"
+#include "posefusion/calibration/pair_equations.hpp"
+#include "posefusion/calibration/view_pairs.hpp"
+
+namespace pf {
+
+/// How a field is estimated.
+struct FieldEstimateConfig {
+  int columns = DepthField::kColumns, rows = DepthField::kRows;
+  double node_sigma_per_m = 0.005;    ///< what an uncalibrated camera has (1/m)
+  double smooth_sigma_per_m = 0.001;  ///< by which neighbouring nodes differ (1/m)
+  int steps = 8;                      ///< Gauss-Newton
+  std::size_t keep_out_every = 5;     ///< one pair in so many judges, and is not learned from
+  PairModel model;
+  PairLimits pairs;
+};
+
+/// Residuals of pairs that were kept out, each pair at the pose that fits it best.
+struct KeptOut {
+  std::size_t pairs = 0;
+  double before_mm = 0, after_mm = 0;      ///< median distance of a patch to the other's plane
+  double before_loss = 0, after_loss = 0;  ///< mean robust loss, 0..1
+  /// Mean gain in loss over its standard error; the pairs of one view count as one.
+  double significance = 0;
+};
+
+/// What was found.
+struct FieldEstimate {
+  DepthField field;            ///< mean zero
+  Eigen::MatrixXd covariance;  ///< of the nodes, (1/m)^2
+  double sigma_per_m = 0;      ///< by that, of the field over the image (RMS, 1/m)
+  std::size_t views = 0, pairs = 0, residuals = 0;  ///< learned from
+  double rest_per_m = 0;                            ///< that the field leaves unexplained
+  KeptOut kept_out;
+  bool worth_taking = false;
+  std::string reason;  ///< why it is not worth taking, or why there is no estimate
+};
+
+/// Estimates the field of a camera from keyframes whose poses are known well (loops are closed):
+/// Gauss-Newton over the residuals of all overlapping pairs, poses held but for a small error of
+/// each pair. The same bytes for any order of the views and any number of threads. Where there is
+/// too little the field is zero, and the reason says what is missing. Throws InputError for a view
+/// whose image and camera do not fit together.
+FieldEstimate estimateField(const std::vector<CalibrationView>& views,
+                            const FieldEstimateConfig& config = {});
+
+}  // namespace pf

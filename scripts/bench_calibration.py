@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The part `calibration` of scripts/bench: a walk by one camera as it is, and again with the calibration that its own
+map gives; each seed has a camera of its own."""
+from bench_report import Failed, call
+from bench_runs import PROGRAMS, Runs, note
+
+
+class Calibration(Runs):
+    def calibration(self):
+        for seed in self.options.seeds:
+            sequence = self.simulated("loop_room", seed, None, "--set", f"depth.specimen={seed}")
+            before = self.run(f"{sequence.name}_uncalibrated", sequence, "--detector", "embedded")[0]
+            self.camera_rows(f"loop_room {seed}, camera {seed}, as it is", sequence, before, {})
+            file = self.output / f"{sequence.name}_calibration.yaml"
+            self.calibrate(f"loop_room {seed}, camera {seed}", sequence, before, file)
+            after = self.run(f"{sequence.name}_calibrated", sequence, "--detector", "embedded",
+                             "--calibration", file)[0]
+            self.camera_rows(f"loop_room {seed}, camera {seed}, with the calibration of its first pass", sequence, after,
+                             {"ate": 0.022, "live": 0.030, "false": 0, "median": 12, "p95": 35, "layers": 0.3})
+
+    def calibrate(self, name, sequence, run, file):
+        note(f"calibrating {sequence.name}")
+        said = call(PROGRAMS / "posefusion_calibrate", run / "map.pfdb", "--output", file, "--truth", sequence)
+        truth = next((line for line in said.splitlines() if "correlation" in line), None)
+        if truth is None:
+            raise Failed(f"posefusion_calibrate told nothing of the truth: {said}")
+        words = truth.replace(";", "").split()
+        self.row(f"{name}: field against the truth, correlation", float(words[1]), "", 0.93, most=False, digits=3)
+        self.row(f"{name}: what is left at 4 m, RMS", float(words[words.index("4") - 3]), "mm", 10, digits=1)
+
+    def camera_rows(self, name, sequence, run, bars):
+        """Errors at the end and at the time, and of the surface; `bars` by name, where there are any."""
+        final = self.evaluate(sequence, run)
+        live = self.evaluate(sequence, run / "trajectory_live.txt")
+        self.row(f"{name}: ATE, final", final["ate_m"]["rmse"], "m", bars.get("ate"), digits=4)
+        self.row(f"{name}: ATE, live", live["ate_m"]["rmse"], "m", bars.get("live"), digits=4)
+        self.row(f"{name}: live poses off by more than 0.10 m or 5 degrees", live["false_poses"], "",
+                 bars.get("false"), digits=0)
+        surface = self.evaluate("surface", run, sequence)
+        self.row(f"{name}: surfels to the true surface, median", 1e3 * surface["median_m"], "mm",
+                 bars.get("median"), digits=1)
+        self.row(f"{name}: the same, 95 %", 1e3 * surface["p95_m"], "mm", bars.get("p95"), digits=1)
+        self.row(f"{name}: surfels in two layers", 100 * surface["two_layers"], "%", bars.get("layers"), digits=2)

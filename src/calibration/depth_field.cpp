@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/calibration/depth_field.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace pf {
+namespace {
+
+// Places that stand for the image.
+constexpr int kAcross = 64, kDown = 48;
+
+/// The four cubic B-splines that are not zero at a place in [0, 1], and their derivatives by it
+/// (de Boor, "A Practical Guide to Splines", 1978; uniform knots).
+struct Cubic {
+  int first;
+  std::array<double, 4> weight, slope;
+};
+
+Cubic cubicAt(double place, int count) {
+  const int intervals = count - 3;
+  const double at = std::clamp(place, 0.0, 1.0) * intervals;
+  const int first = std::min(static_cast<int>(at), intervals - 1);
+  const double t = at - first, s = 1 - t;
+  return {first,
+          {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+           t * t * t / 6},
+          {-intervals * s * s / 2, intervals * (3 * t * t - 4 * t) / 2,
+           -intervals * (3 * s * s - 4 * s) / 2, intervals * t * t / 2}};
+}
+
+/// Calls visit(x, y) for places spread over the image.
+template <typename Visit>
+void overImage(const Visit& visit) {
+  for (int row = 0; row < kDown; ++row) {
+    for (int col = 0; col < kAcross; ++col) visit((col + 0.5) / kAcross, (row + 0.5) / kDown);
+  }
+}
+
+/// Takes the values of a function at `samples` places from 0 to 1 to the spline nearest to them. A
+/// trace of smoothness keeps the outermost nodes, which hardly count in the image, from running
+/// off.
+Eigen::MatrixXd fitting(int count, int samples) {
+  constexpr double kSmooth = 1e-6;
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(samples, count);
+  for (int i = 0; i < samples; ++i) {
+    const Cubic c = cubicAt(static_cast<double>(i) / (samples - 1), count);
+    for (int k = 0; k < 4; ++k) values(i, c.first + k) = c.weight[static_cast<std::size_t>(k)];
+  }
+  Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(count - 2, count);
+  for (int i = 0; i + 2 < count; ++i) bend.row(i).segment<3>(i) << 1, -2, 1;
+  const Eigen::MatrixXd A = values.transpose() * values + kSmooth * bend.transpose() * bend;
+  return A.ldlt().solve(values.transpose());
+}
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+DepthField::DepthField(int columns, int rows, std::vector<double> nodes_per_m)
+    : columns_(columns), rows_(rows), nodes_(std::move(nodes_per_m)) {
+  if (nodes_.size() != nodeCount(columns, rows)) {
+    throw std::invalid_argument("a field of " + std::to_string(columns) + " x " +
+                                std::to_string(rows) + " nodes was given " +
+                                std::to_string(nodes_.size()));
+  }
+  for (const double node : nodes_) {
+    if (!std::isfinite(node)) throw std::invalid_argument("a node of a field is not finite");
+  }
+}
+
+std::size_t DepthField::nodeCount(int columns, int rows) {
+  if (columns < 4 || rows < 4) throw std::invalid_argument("a field needs 4 x 4 nodes or more");
+  return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+}
+
+FieldWeights DepthField::weights(double x, double y) const {
+  const Cubic c = cubicAt(x, columns_), r = cubicAt(y, rows_);
+  FieldWeights w;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      const std::size_t k = 4 * i + j;
+      w.node[k] = (r.first + static_cast<int>(i)) * columns_ + c.first + static_cast<int>(j);
+      w.weight[k] = r.weight[i] * c.weight[j];
+      w.by_x[k] = r.weight[i] * c.slope[j];
+      w.by_y[k] = r.slope[i] * c.weight[j];
+    }
+  }
+  return w;
+}
+
+double DepthField::at(const FieldWeights& w) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
+    sum += w.weight[k] * nodes_[static_cast<std::size_t>(w.node[k])];
+  }
+  return sum;
+}
+
+double DepthField::at(double x, double y) const { return at(weights(x, y)); }
+
+double DepthField::corrected(double z_m, double x, double y) const {
+  const double inverse = 1.0 + z_m * at(x, y);
+  return z_m > 0 && inverse > 0 ? z_m / inverse : 0.0;
+}
+
+double DepthField::mean() const {
+  return std::accumulate(nodes_.begin(), nodes_.end(), 0.0) / static_cast<double>(nodes_.size());
+}
+
+double DepthField::rms() const {
+  double sum = 0;
+  overImage([&](double x, double y) { sum += squared(at(x, y)); });
+  return std::sqrt(sum / (kAcross * kDown));
+}
+
+DepthField DepthField::centred() const {
+  DepthField field = *this;
+  const double middle = mean();
+  for (double& node : field.nodes_) node -= middle;
+  return field;
+}
+
+DepthField DepthField::inverse() const {
+  DepthField field = *this;
+  for (double& node : field.nodes_) node = -node;
+  return field;
+}
+
+DepthField DepthField::then(const DepthField& next) const {
+  if (next.columns_ != columns_ || next.rows_ != rows_) {
+    throw std::invalid_argument("two fields of different grids");
+  }
+  DepthField field = *this;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) field.nodes_[i] += next.nodes_[i];
+  return field;
+}
+
+DepthField fittedField(int columns, int rows, const std::function<double(double, double)>& d) {
+  const int across = 4 * columns, down = 4 * rows;
+  Eigen::MatrixXd values(down, across);
+  for (int r = 0; r < down; ++r) {
+    for (int c = 0; c < across; ++c) {
+      values(r, c) = d(static_cast<double>(c) / (across - 1), static_cast<double>(r) / (down - 1));
+    }
+  }
+  // Transposed, its columns one after another are the rows of the field.
+  const Eigen::MatrixXd nodes =
+      (fitting(rows, down) * values * fitting(columns, across).transpose()).transpose();
+  return {columns, rows, std::vector<double>(nodes.data(), nodes.data() + nodes.size())};
+}
+
+FieldComparison compare(const DepthField& a, const DepthField& b) {
+  std::vector<double> of_a, of_b;
+  overImage([&](double x, double y) {
+    of_a.push_back(a.at(x, y));
+    of_b.push_back(b.at(x, y));
+  });
+  const double count = static_cast<double>(of_a.size());
+  FieldComparison result;
+  result.mean_a = std::accumulate(of_a.begin(), of_a.end(), 0.0) / count;
+  result.mean_b = std::accumulate(of_b.begin(), of_b.end(), 0.0) / count;
+  double aa = 0, bb = 0, ab = 0, dd = 0;
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const double da = of_a[i] - result.mean_a, db = of_b[i] - result.mean_b;
+    aa += squared(da);
+    bb += squared(db);
+    ab += da * db;
+    dd += squared(da - db);
+  }
+  if (aa > 0 && bb > 0) result.correlation = ab / std::sqrt(aa * bb);
+  result.rms_a = std::sqrt(aa / count);
+  result.rms_b = std::sqrt(bb / count);
+  result.rms_difference = std::sqrt(dd / count);
+  return result;
+}
+
+}  // namespace pf

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/calibration/field_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "field_solver.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/parallel.hpp"
+
+namespace pf {
+namespace {
+
+// One chance in a thousand that luck alone does as well.
+constexpr double kSignificant = 3.1;
+// Of many pairs the tiniest gain is no luck: what is taken out must be clearly more than what may
+// be put in, or a good camera would be made no better, or worse.
+constexpr double kSigmas = 3.0;
+// Fewer judging pairs give no standard error worth the name.
+constexpr std::size_t kFewestJudges = 10;
+
+void require(const CalibrationView& view) {
+  const std::string name = "keyframe " + std::to_string(view.id) + ": ";
+  if (view.depth_mm.type() != CV_16UC1) throw InputError(name + "depth is not 16 bits, in mm");
+  if (view.depth_mm.cols == view.camera.width && view.depth_mm.rows == view.camera.height) return;
+  throw InputError(name + "depth is " + std::to_string(view.depth_mm.cols) + " x " +
+                   std::to_string(view.depth_mm.rows) + ", expected the camera's " +
+                   std::to_string(view.camera.width) + " x " + std::to_string(view.camera.height));
+}
+
+/// In the order of their numbers, so that the order they came in does not matter.
+std::vector<ViewSurface> surfacesOf(const std::vector<CalibrationView>& views) {
+  std::vector<const CalibrationView*> sorted;
+  for (const CalibrationView& view : views) {
+    require(view);
+    sorted.push_back(&view);
+  }
+  std::sort(sorted.begin(), sorted.end(), [](auto* a, auto* b) { return a->id < b->id; });
+  std::vector<std::vector<ViewSurface>> made(sorted.size());
+  parallelFor(sorted.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) made[i].emplace_back(*sorted[i]);
+  });
+  std::vector<ViewSurface> surfaces;
+  for (auto& one : made) surfaces.push_back(std::move(one.front()));
+  return surfaces;
+}
+
+/// Standard deviation of the field, RMS over the image.
+double sigmaOf(const DepthField& field, const Eigen::MatrixXd& covariance) {
+  constexpr int kAcross = 32, kDown = 24;
+  double sum = 0;
+  for (int i = 0; i < kAcross * kDown; ++i) {
+    const FieldWeights w =
+        field.weights((i % kAcross + 0.5) / kAcross, (i / kAcross + 0.5) / kDown);
+    for (std::size_t a = 0; a < FieldWeights::kNodes; ++a) {
+      for (std::size_t b = 0; b < FieldWeights::kNodes; ++b) {
+        sum += w.weight[a] * w.weight[b] * covariance(w.node[a], w.node[b]);
+      }
+    }
+  }
+  return std::sqrt(sum / (kAcross * kDown));
+}
+
+std::string doubtOf(const FieldEstimate& estimate) {
+  if (!(estimate.kept_out.significance > kSignificant)) {
+    return "pairs that were kept out do not agree better by more than luck explains";
+  }
+  if (estimate.field.rms() > kSigmas * estimate.sigma_per_m) return {};
+  std::ostringstream text;
+  text << "the error found, " << estimate.field.rms() << " 1/m, is less than " << kSigmas
+       << " times what it is known to, " << estimate.sigma_per_m;
+  return text.str();
+}
+
+}  // namespace
+
+FieldEstimate estimateField(const std::vector<CalibrationView>& views,
+                            const FieldEstimateConfig& config) {
+  FieldEstimate estimate;
+  estimate.field = DepthField(config.columns, config.rows);
+  const std::vector<ViewSurface> surfaces = surfacesOf(views);
+  estimate.views = surfaces.size();
+  std::vector<ViewPair> learned, judges;
+  for (const ViewPair& pair : overlappingPairs(surfaces, config.pairs)) {
+    const bool judge =
+        (learned.size() + judges.size()) % config.keep_out_every == config.keep_out_every - 1;
+    (judge ? judges : learned).push_back(pair);
+  }
+  estimate.pairs = learned.size();
+  if (judges.size() < kFewestJudges) {
+    estimate.reason = "of " + std::to_string(surfaces.size()) + " keyframes " +
+                      std::to_string(learned.size() + judges.size()) +
+                      " pairs saw the same surface, expected " +
+                      std::to_string(kFewestJudges * config.keep_out_every) + " or more";
+    return estimate;
+  }
+  FieldSolution solution = solveField(learned, surfaces, config);
+  estimate.field = std::move(solution.field);
+  estimate.covariance = std::move(solution.covariance);
+  estimate.sigma_per_m = sigmaOf(estimate.field, estimate.covariance);
+  estimate.residuals = solution.residuals;
+  estimate.rest_per_m = solution.model.rest_per_m;
+  estimate.kept_out = judgeField(judges, surfaces, estimate.field, solution.model);
+  estimate.reason = doubtOf(estimate);
+  estimate.worth_taking = estimate.reason.empty();
+  return estimate;
+}
+
+}  // namespace pf

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/calibrated_source.hpp"
+
+#include <utility>
+
+#include "posefusion/calibration/depth_correction.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/calibration_file.hpp"
+
+namespace pf {
+namespace {
+
+class CalibratedSource : public FrameSource {
+ public:
+  CalibratedSource(std::unique_ptr<FrameSource> source, const std::string& file)
+      : source_(std::move(source)),
+        file_(file),
+        calibration_(loadCalibration(file)),
+        corrector_(calibration_.field) {}
+
+  std::size_t frameCount() const override { return source_->frameCount(); }
+  RecordedPeople people() override { return source_->people(); }
+  Trajectory truth() override { return source_->truth(); }
+  InputReport report() const override { return source_->report(); }
+
+  std::optional<SourceFrame> next() override {
+    auto next = source_->next();
+    if (!next || !next->defect.empty() || !defectOf(next->frame).empty()) return next;
+    const RgbdFrame straight = rectifier_.rectify(next->frame);
+    const std::string wrong = misfit(calibration_, straight.camera);
+    if (!wrong.empty()) throw InputError(file_ + ": " + wrong);
+    next->frame = corrector_.correct(straight);
+    return next;
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::string file_;
+  DepthCalibration calibration_;
+  Rectifier rectifier_;
+  FrameCorrector corrector_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> calibrated(std::unique_ptr<FrameSource> source,
+                                        const std::string& calibration_file) {
+  if (calibration_file.empty()) return source;
+  return std::make_unique<CalibratedSource>(std::move(source), calibration_file);
+}
+
+}  // namespace pf

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/io/calibration_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "posefusion/config/yaml_map.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+
+namespace pf {
+namespace {
+
+constexpr char kModel[] = "inverse_depth_spline";
+constexpr int kMostNodes = 1000;        // in a direction: more than pixels that a cell needs
+constexpr double kLargest_per_m = 0.1;  // at 4 m the depth would be wrong by 40 %
+constexpr double kMost = 1e9;           // of counts
+
+/// The number of a key that has to be there.
+double required(YamlMap& map, const std::string& key, double min, double max) {
+  if (!map.has(key)) map.fail(key, "is missing, expected a number");
+  return map.number(key, 0, min, max);
+}
+
+int requiredCount(YamlMap& map, const std::string& key, int min, int max) {
+  if (!map.has(key)) map.fail(key, "is missing, expected a whole number");
+  return map.integer(key, min, min, max);
+}
+
+PinholeCamera readCamera(YamlMap map) {
+  PinholeCamera camera;
+  camera.width = requiredCount(map, "width", 1, 100000);
+  camera.height = requiredCount(map, "height", 1, 100000);
+  camera.fx = required(map, "fx", 1e-3, 1e6);
+  camera.fy = required(map, "fy", 1e-3, 1e6);
+  camera.cx = required(map, "cx", -1e6, 1e6);
+  camera.cy = required(map, "cy", -1e6, 1e6);
+  map.finish();
+  return camera;
+}
+
+DepthField readField(YamlMap& map) {
+  const int columns = requiredCount(map, "columns", 4, kMostNodes);
+  const int rows = requiredCount(map, "rows", 4, kMostNodes);
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::vector<double> nodes = map.numbers("nodes_per_m", count);
+  for (const double node : nodes) {
+    if (std::abs(node) <= kLargest_per_m) continue;
+    std::ostringstream text;
+    text << "has " << node << ", expected 1/m between " << -kLargest_per_m << " and "
+         << kLargest_per_m;
+    map.fail("nodes_per_m", text.str());
+  }
+  return {columns, rows, std::move(nodes)};
+}
+
+/// A text as YAML may have it anywhere.
+std::string quoted(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
+}  // namespace
+
+DepthCalibration loadCalibration(const std::string& path) {
+  YamlMap map(parseYaml(readFile(path), path), path + ": ");
+  DepthCalibration calibration;
+  if (!map.has("model")) map.fail("model", "is missing, expected " + std::string(kModel));
+  map.word("model", kModel, {kModel});
+  calibration.name = map.text("camera", "");
+  calibration.camera = readCamera(map.map("image"));
+  calibration.field = readField(map);
+  calibration.keyframes = static_cast<std::size_t>(map.number("keyframes", 0, 0, kMost));
+  calibration.pairs = static_cast<std::size_t>(map.number("pairs", 0, 0, kMost));
+  calibration.before_mm = map.number("residual_before_mm", 0, 0, kMost);
+  calibration.after_mm = map.number("residual_after_mm", 0, 0, kMost);
+  map.finish();
+  try {
+    validate(calibration.camera);
+  } catch (const InputError& error) {
+    throw InputError(path + ": image: " + error.what());
+  }
+  return calibration;
+}
+
+void saveCalibration(const std::string& path, const DepthCalibration& calibration) {
+  const PinholeCamera& c = calibration.camera;
+  AtomicFile file(path);
+  std::ostream& out = file.stream();
+  out << std::setprecision(10)
+      << "# Systematic error of a depth camera: 1/z_true = 1/z + d(u, v), bilinear over the "
+         "image.\n"
+      << "model: " << kModel << "\ncamera: " << quoted(calibration.name)
+      << "\nimage: {width: " << c.width << ", height: " << c.height << ", fx: " << c.fx
+      << ", fy: " << c.fy << ", cx: " << c.cx << ", cy: " << c.cy << "}\n"
+      << "keyframes: " << calibration.keyframes << "\npairs: " << calibration.pairs
+      << "\nresidual_before_mm: " << calibration.before_mm
+      << "\nresidual_after_mm: " << calibration.after_mm << "\n"
+      << "columns: " << calibration.field.columns() << "\nrows: " << calibration.field.rows()
+      << "\nnodes_per_m: [";
+  const auto columns = static_cast<std::size_t>(calibration.field.columns());
+  const auto& nodes = calibration.field.nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    out << (i == 0 ? "\n  " : i % columns == 0 ? ",\n  " : ", ") << nodes[i];
+  }
+  out << "]\n";
+  file.commit();
+}
+
+std::string misfit(const DepthCalibration& calibration, const PinholeCamera& camera) {
+  const PinholeCamera& own = calibration.camera;
+  const auto shift = [](double f_own, double c_own, int size_own, double f, double c, int size) {
+    // Rays at both borders of the images, in parts of their width.
+    double most = 0;
+    for (const double border : {0.0, 1.0}) {
+      const double ray = (border * size_own - 0.5 - c_own) / f_own;
+      most = std::max(most, std::abs((f * ray + c + 0.5) / size - border));
+    }
+    return most;
+  };
+  const double x = shift(own.fx, own.cx, own.width, camera.fx, camera.cx, camera.width);
+  const double y = shift(own.fy, own.cy, own.height, camera.fy, camera.cy, camera.height);
+  if (x < 0.5 / (DepthField::kColumns - 1) && y < 0.5 / (DepthField::kRows - 1)) return {};
+  std::ostringstream text;
+  text << "is of a camera of another view (" << own.width << " x " << own.height << ", fx "
+       << own.fx << ") than the frames (" << camera.width << " x " << camera.height << ", fx "
+       << camera.fx << ")";
+  return text.str();
+}
+
+}  // namespace pf

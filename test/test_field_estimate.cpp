@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/calibration/field_estimate.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "calibration_room.hpp"
+#include "posefusion/core/error.hpp"
+
+namespace pf {
+namespace {
+
+constexpr int kViews = 60;
+
+std::vector<CalibrationView> distortedViews() {
+  test::RoomView like;
+  like.field = test::roomField();
+  return test::roomViews(kViews, like);
+}
+
+const FieldEstimate& distortedEstimate() {
+  static const FieldEstimate estimate = estimateField(distortedViews());
+  return estimate;
+}
+
+TEST(FieldEstimate, recoversTheFieldOfASyntheticCamera) {
+  const FieldEstimate& estimate = distortedEstimate();
+  EXPECT_EQ(estimate.reason, "");
+  EXPECT_TRUE(estimate.worth_taking);
+  const FieldComparison like = compare(estimate.field, test::roomField());
+  EXPECT_GE(like.correlation, 0.95);
+  EXPECT_LT(like.rms_difference, 0.3 * like.rms_b);
+  EXPECT_LT(estimate.kept_out.after_mm, estimate.kept_out.before_mm);
+  EXPECT_GE(estimate.views, static_cast<std::size_t>(kViews));
+}
+
+TEST(FieldEstimate, hasNoMean) { EXPECT_NEAR(distortedEstimate().field.mean(), 0, 1e-15); }
+
+TEST(FieldEstimate, poseErrorsOfACentimetreDoNotRuinIt) {
+  test::RoomView like;
+  like.field = test::roomField();
+  like.pose_error_m = 0.007;
+  const FieldEstimate estimate = estimateField(test::roomViews(kViews, like));
+  EXPECT_GE(compare(estimate.field, test::roomField()).correlation, 0.9);
+  EXPECT_TRUE(estimate.worth_taking);
+}
+
+TEST(FieldEstimate, aGoodCameraIsLeftAlone) {
+  for (const double pose_error_m : {0.0, 0.005}) {
+    test::RoomView like;
+    like.pose_error_m = pose_error_m;
+    const FieldEstimate estimate = estimateField(test::roomViews(kViews, like));
+    EXPECT_LT(estimate.field.rms(), 0.0005) << pose_error_m;
+    EXPECT_FALSE(estimate.worth_taking) << pose_error_m << ", " << estimate.kept_out.significance;
+    EXPECT_NE(estimate.reason, "");
+  }
+}
+
+TEST(FieldEstimate, theOrderOfTheViewsAndThreadsDoNotMatter) {
+  auto views = distortedViews();
+  std::reverse(views.begin(), views.end());
+  std::swap(views[3], views[20]);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const FieldEstimate estimate = estimateField(views);
+  EXPECT_EQ(estimate.field.nodes(), distortedEstimate().field.nodes());
+  EXPECT_EQ(estimate.kept_out.significance, distortedEstimate().kept_out.significance);
+}
+
+TEST(FieldEstimate, viewsOfDifferentFragmentsMakeNoPair) {
+  // Each fragment has coordinates of its own: poses of two of them say nothing of each other.
+  auto views = distortedViews();
+  std::vector<ViewSurface> surfaces;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].fragment = static_cast<int>(i % 2);
+    surfaces.emplace_back(views[i]);
+  }
+  const std::vector<ViewPair> pairs = overlappingPairs(surfaces);
+  EXPECT_GT(pairs.size(), 10U);
+  for (const ViewPair& pair : pairs) {
+    EXPECT_EQ(surfaces[pair.from].fragment(), surfaces[pair.to].fragment());
+  }
+}
+
+TEST(FieldEstimate, saysWhatIsMissing) {
+  test::RoomView like;
+  like.field = test::roomField();
+  const FieldEstimate few = estimateField(test::roomViews(3, like));
+  EXPECT_FALSE(few.worth_taking);
+  EXPECT_NE(few.reason.find("3 keyframes"), std::string::npos) << few.reason;
+  EXPECT_EQ(few.field.rms(), 0);
+  EXPECT_FALSE(estimateField({}).worth_taking);
+}
+
+TEST(FieldEstimate, refusesAnImageThatIsNotItsCameras) {
+  auto views = distortedViews();
+  views[1].camera.width = 320;
+  EXPECT_THROW(estimateField(views), InputError);
+}
+
+}  // namespace
+}  // namespace pf
