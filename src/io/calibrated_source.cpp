@@ -3,9 +3,7 @@
 
 #include <utility>
 
-#include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/core/error.hpp"
-#include "posefusion/io/calibration_file.hpp"
 
 namespace pf {
 namespace {
@@ -13,10 +11,7 @@ namespace {
 class CalibratedSource : public FrameSource {
  public:
   CalibratedSource(std::unique_ptr<FrameSource> source, const std::string& file)
-      : source_(std::move(source)),
-        file_(file),
-        calibration_(loadCalibration(file)),
-        corrector_(calibration_.field) {}
+      : source_(std::move(source)), frames_(file) {}
 
   std::size_t frameCount() const override { return source_->frameCount(); }
   RecordedPeople people() override { return source_->people(); }
@@ -26,22 +21,26 @@ class CalibratedSource : public FrameSource {
   std::optional<SourceFrame> next() override {
     auto next = source_->next();
     if (!next || !next->defect.empty() || !defectOf(next->frame).empty()) return next;
-    const RgbdFrame straight = rectifier_.rectify(next->frame);
-    const std::string wrong = misfit(calibration_, straight.camera);
-    if (!wrong.empty()) throw InputError(file_ + ": " + wrong);
-    next->frame = corrector_.correct(straight);
+    next->frame = frames_.correct(rectifier_.rectify(next->frame));
     return next;
   }
 
  private:
   std::unique_ptr<FrameSource> source_;
-  std::string file_;
-  DepthCalibration calibration_;
   Rectifier rectifier_;
-  FrameCorrector corrector_;
+  CalibratedFrames frames_;
 };
 
 }  // namespace
+
+CalibratedFrames::CalibratedFrames(const std::string& file)
+    : file_(file), calibration_(loadCalibration(file)), corrector_(calibration_.field) {}
+
+RgbdFrame CalibratedFrames::correct(const RgbdFrame& straight) {
+  const std::string wrong = misfit(calibration_, straight.camera);
+  if (!wrong.empty()) throw InputError(file_ + ": " + wrong);
+  return corrector_.correct(straight);
+}
 
 std::unique_ptr<FrameSource> calibrated(std::unique_ptr<FrameSource> source,
                                         const std::string& calibration_file) {

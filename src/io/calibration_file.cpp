@@ -93,7 +93,7 @@ void saveCalibration(const std::string& path, const DepthCalibration& calibratio
   AtomicFile file(path);
   std::ostream& out = file.stream();
   out << std::setprecision(10)
-      << "# Systematic error of a depth camera: 1/z_true = 1/z + d(u, v), bilinear over the "
+      << "# Systematic error of a depth camera: 1/z_true = 1/z + d(u, v), a cubic spline over the "
          "image.\n"
       << "model: " << kModel << "\ncamera: " << quoted(calibration.name)
       << "\nimage: {width: " << c.width << ", height: " << c.height << ", fx: " << c.fx

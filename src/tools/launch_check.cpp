@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/run_folder.hpp"
 #include "posefusion/io/saved_map_file.hpp"
@@ -156,6 +157,11 @@ void checkCamera(const Given& given) {
   posefusion_ros::readInput(parameters);
 }
 
+void checkCalibration(const Given& given) {
+  const std::string file = given["calibration"];
+  if (!file.empty()) pf::loadCalibration(file);
+}
+
 void checkInput(const Given& given, const pf::Config& config,
                 const std::optional<pf::PinholeCamera>& of_map) {
   posefusion_ros::InputOptions options;
@@ -180,6 +186,7 @@ void check(const std::string& launch_file, const Given& given) {
   given.checkFlags(given["flags"]);
   const pf::Config config = configOf(given);
   if (given["without_people_if_no_detector"] != "true") checkDetector(config.pose);
+  checkCalibration(given);
   checkCamera(given);
   const auto of_map = checkMap(given);
   if (!given["bag"].empty()) checkInput(given, config, of_map);

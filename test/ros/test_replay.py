@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -30,6 +31,12 @@ def free_port():
 def poses(path):
     lines = pathlib.Path(path).read_text().splitlines()
     return [line for line in lines if not line.startswith("#")]
+
+
+def bend(nodes):
+    """The nodes of a calibration file, with a field that is not zero."""
+    numbers = nodes[nodes.index("[") + 1:-1].split(",")
+    return "nodes_per_m: [" + ", ".join(str(0.004 * ((i % 3) - 1)) for i, _ in enumerate(numbers)) + "]"
 
 
 class Replay(unittest.TestCase):
@@ -76,6 +83,23 @@ class Replay(unittest.TestCase):
         self.assertEqual(pathlib.Path(self.folder, "ros_run/latest/map.ply").read_bytes(),
                          pathlib.Path(self.folder, "offline/latest/map.ply").read_bytes())
         self.check_summaries(text)
+
+    def test_a_calibration_corrects_depth_as_in_the_offline_run(self):
+        plain = self.folder + "/sequence/depth_field.yaml"
+        bent = pathlib.Path(self.folder, "bent.yaml")
+        bent.write_text(re.sub(r"nodes_per_m: \[[^\]]*\]", lambda found: bend(found[0]), pathlib.Path(plain).read_text()))
+        text = self.replay("bag:=" + self.bag, "detector:=recorded", "output:=calibrated", "calibration:=bent.yaml")
+        self.assertIn(f"{FRAMES} frames sent, {FRAMES} fused", text)
+        runs = {}
+        for name, arguments in (("corrected", ("--calibration", str(bent))), ("uncorrected", ())):
+            self.call(program("posefusion_run"), self.bag, "--detector", "recorded", "--output",
+                      self.folder + "/" + name, *arguments)
+            runs[name] = pathlib.Path(self.folder, name, "latest/map.ply").read_bytes()
+        self.assertEqual(pathlib.Path(self.folder, "calibrated/latest/map.ply").read_bytes(), runs["corrected"])
+        self.assertNotEqual(runs["corrected"], runs["uncorrected"])
+        bent.write_text("nonsense")
+        text = self.replay("bag:=" + self.bag, "output:=none", "calibration:=bent.yaml", expect=None)
+        self.assertIn(str(bent), text)
 
     def check_summaries(self, text):
         """What the replay tells beside the offline run is the same, as far as it is told."""
