@@ -199,7 +199,7 @@ class Repository(unittest.TestCase):
 
     def test_options_in_readme_exist(self):
         known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench"))
-        for program in ("run", "evaluate", "simulate"):
+        for program in ("run", "evaluate", "simulate", "calibrate"):
             path = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / f"posefusion_{program}"
             known += subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, text=True).stdout
         options = set(re.findall(r"(?<![\w-])--[a-z][\w-]*", (ROOT / "README.md").read_text()))
