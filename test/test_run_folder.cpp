@@ -41,7 +41,7 @@ TEST(RunFolder, APartialOneGetsItsNameInOneStepAndTakesNoOthers) {
     EXPECT_EQ(readFile(run->file("map.ply")), partial);
   }
   EXPECT_NE(first.path(), second.path());
-  // Somebody else has taken the name meanwhile.
+  // Another run has taken the name meanwhile.
   RunFolder third(folder / "output", RunFolder::Name::partial);
   const std::string wanted = fs::path(third.path()).replace_extension();
   fs::create_directory(wanted);

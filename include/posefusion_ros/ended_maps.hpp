@@ -12,9 +12,9 @@
 
 namespace posefusion_ros {
 
-/// The folders of maps that were ended and saved without anybody asking for the files: the oldest
-/// go when there are too many. Only files go that are as they were written here, so that what
-/// somebody else has put there, or has gone on in, stays.
+/// The folders of maps that were ended and saved without a request: the oldest
+/// go when there are too many. Only files go that are as they were written here, so that other
+/// files, and maps that a later run has extended, stay.
 class EndedMaps {
  public:
   /// The newest. `names`: the files that were written, as far as they are there.

@@ -23,7 +23,7 @@ class StatusOutput {
 
   void publish(const TrackingStatusMsg& status);
 
-  /// Takes the text away: nobody knows the state any more.
+  /// Takes the text away: the state is not known any more.
   void clearText();
 
  private:

@@ -52,7 +52,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit(Until until) {
   errno = 0;
-  if (!stream_.flush()) {  // or a write before failed, whose reason nobody has kept
+  if (!stream_.flush()) {  // or a write before failed, whose reason is not known here
     throw InputError(path_ + ": cannot be written: " + (errno != 0 ? reason() : "disk full?"));
   }
   stream_.close();

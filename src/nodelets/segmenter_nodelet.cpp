@@ -97,7 +97,7 @@ class SegmenterNodelet : public ChainNodelet {
     if (view->reset != 0) clearMarkers();
   }
 
-  /// Whether somebody is told.
+  /// Takes all skeletons away. False where no viewer listens.
   bool clearMarkers() {
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     if (!marker_publisher_ || marker_publisher_.getNumSubscribers() == 0) return false;

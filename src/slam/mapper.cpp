@@ -47,7 +47,7 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   return text;
 }
 
-/// Nobody knows where a camera is that is not the map's.
+/// The place of a camera that is not the map's is not known.
 TrackingState Mapper::State::state() const {
   return sees_other_camera ? TrackingState::lost : localiser.state();
 }

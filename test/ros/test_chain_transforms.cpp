@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// map -> odom while nobody knows where the camera is.
+// map -> odom while the camera is lost.
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/static_transform_broadcaster.h>
