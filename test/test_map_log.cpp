@@ -123,7 +123,17 @@ TEST(MapLog, AMapIsRenamedWholeAndOverNothing) {
   // A log alone would be taken for its own.
   folder.write("gone.pfdb-wal", "of a map that was deleted");
   EXPECT_NE(rename(path, folder / "gone.pfdb").find("is there already"), std::string::npos);
+  // The program's own earlier one may go, but not for one that is not whole, nor under a log.
   const std::string open = killed(folder, "open.pfdb", {});
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    return errorOf([&] { renameMapFile(from, to, IfThere::replace); });
+  };
+  const std::string own = saved(folder, ExampleMap().update, "own.pfdb"), before = readFile(own);
+  EXPECT_NE(replace(open, own).find("was not closed"), std::string::npos);
+  EXPECT_TRUE(readFile(own) == before);
+  EXPECT_NE(replace(path, folder / "gone.pfdb").find("is there already"), std::string::npos);
+  EXPECT_EQ(replace(saved(folder, ExampleMap().update, "later.pfdb"), own), "");
+  readAll(own);
   EXPECT_NE(rename(open, folder / "map.pfdb").find("was not closed"), std::string::npos);
   EXPECT_TRUE(fs::exists(open));
   EXPECT_EQ(rename(path, folder / "map.pfdb"), "");

@@ -224,13 +224,14 @@ void MapWriter::write(const MapUpdate& update) {
   emptyLog(database);
 }
 
-void renameMapFile(const std::string& from, const std::string& to) {
+void renameMapFile(const std::string& from, const std::string& to, IfThere other) {
   if (lookAtFiles(from).has_log) {
     throw InputError(from + ": was not closed, its log " + logOf(from) +
                      " cannot be written into it (disk full?): it keeps its name");
   }
   std::error_code error;
   for (const std::string& there : {to, logOf(to)}) {
+    if (there == to && other == IfThere::replace) continue;
     if (std::filesystem::exists(std::filesystem::symlink_status(there, error))) {
       throw InputError(to + ": cannot be written: " + there + " is there already; the map is " +
                        from);

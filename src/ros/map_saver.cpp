@@ -21,12 +21,6 @@ constexpr char kOnRequest[] = "_saved";  // what a folder's name ends with that 
 
 namespace fs = std::filesystem;
 
-void rename(const std::string& from, const std::string& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) throw pf::InputError(to + ": cannot be written: " + error.message());
-}
-
 pf::Trajectory posesOf(const MapToSave& map) {
   pf::Trajectory trajectory = map.trajectory();
   if (trajectory.empty()) throw pf::InputError("nothing to save: no frame was fused");
@@ -129,7 +123,7 @@ void MapSaver::saveDatabase(const MapToSave& map) {
   std::error_code ignored;
   fs::remove(fresh, ignored);
   writeDatabase(map, fresh);
-  rename(fresh, folder().file(kDatabase));
+  pf::renameMapFile(fresh, folder().file(kDatabase), pf::IfThere::replace);
 }
 
 /// What is partial is not needed any more.

@@ -81,9 +81,12 @@ class MapWriter {
   std::unique_ptr<State> state_;
 };
 
+/// What becomes of a closed map that has the name already.
+enum class IfThere { keep, replace };
+
 /// Gives a closed map file another name. Throws InputError naming the file, and leaves both as they
-/// are, where `from` was not closed or there is something at `to` already.
-void renameMapFile(const std::string& from, const std::string& to);
+/// are, where `from` was not closed, a log lies at `to`, or, to be kept, anything.
+void renameMapFile(const std::string& from, const std::string& to, IfThere other = IfThere::keep);
 
 /// How much a map file holds.
 struct MapCounts {
