@@ -9,7 +9,7 @@
 
 #include "calibration_room.hpp"
 #include "posefusion/core/error.hpp"
-#include "posefusion/io/calibrated_source.hpp"
+#include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "temporary_folder.hpp"
 
@@ -94,44 +94,6 @@ TEST(CalibrationFile, holdsForAllSizesOfItsCamera) {
   PinholeCamera other = calibration.camera;
   other.fx *= 1.3;
   EXPECT_NE(misfit(calibration, other).find("640 x 480"), std::string::npos);
-}
-
-/// Two frames, the second of another camera.
-class TwoFrames : public FrameSource {
- public:
-  std::size_t frameCount() const override { return 2; }
-  std::optional<SourceFrame> next() override {
-    if (++given_ > 2) return std::nullopt;
-    SourceFrame next;
-    next.frame.camera = test::roomCamera(640);
-    if (given_ == 2) next.frame.camera.fx *= 1.5;
-    next.frame.color = cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(90));
-    next.frame.depth = cv::Mat(480, 640, CV_16UC1, cv::Scalar(20000));
-    next.frame.depth_unit_m = 0.0002;
-    return next;
-  }
-
- private:
-  int given_ = 0;
-};
-
-TEST(CalibratedSource, correctsTheDepthOfEachFrame) {
-  const TemporaryFolder folder;
-  saveCalibration(folder / "c.yaml", example());
-  const auto source = calibrated(std::make_unique<TwoFrames>(), folder / "c.yaml");
-  EXPECT_EQ(source->frameCount(), 2U);
-  const auto frame = source->next();
-  ASSERT_TRUE(frame);
-  const double wanted = example().field.corrected(4.0, 100.5 / 640, 50.5 / 480);
-  EXPECT_GT(std::abs(wanted - 4.0), 0.005);
-  EXPECT_NEAR(0.0002 * frame->frame.depth.at<std::uint16_t>(50, 100), wanted, 0.00011);
-  EXPECT_THROW(source->next(), InputError) << "of another camera";
-}
-
-TEST(CalibratedSource, isTheSourceItselfWithoutAFile) {
-  auto source = std::make_unique<TwoFrames>();
-  const FrameSource* own = source.get();
-  EXPECT_EQ(calibrated(std::move(source), "").get(), own);
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ TEST(Config, ErrorsNameTheKeyTheValueAndWhatWasExpected) {
             0U);
   EXPECT_NE(assignmentError("tracking.speed=1").find("max_distance_m"), std::string::npos);
   EXPECT_EQ(assignmentError("trackin.max_distance_m=1"),
-            "setting: trackin is unknown, expected one of blur, frame, graph, loop, map, pose, "
+            "setting: trackin is unknown, expected one of blur, calibration, frame, graph, loop, "
+            "map, pose, "
             "segmentation, "
             "tracking");
   EXPECT_EQ(assignmentError("tracking.max_distance_m=near"),

@@ -139,13 +139,18 @@ TEST(DepthCorrection, isTheSameForAllSizesOfAnImage) {
   EXPECT_LT(cv::norm(shrunk, of_small, cv::NORM_INF), 2e-4);
 }
 
-TEST(FrameCorrector, leavesTheFrameItWasGivenAlone) {
-  RgbdFrame frame;
-  frame.depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(4000));
-  const cv::Mat before = frame.depth.clone();
-  const RgbdFrame corrected = FrameCorrector(test::roomField()).correct(frame);
-  EXPECT_EQ(cv::norm(before, frame.depth, cv::NORM_INF), 0);
-  EXPECT_GT(cv::norm(before, corrected.depth, cv::NORM_INF), 10);
+TEST(DepthCorrector, leavesTheImageItWasGivenAloneAndTellsMetresUnrounded) {
+  const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(4000));
+  const cv::Mat before = depth.clone();
+  DepthCorrector corrector(test::roomField());
+  const cv::Mat same = corrector.likeInput(depth, 1e-3), metres = corrector.inMetres(depth, 1e-3);
+  EXPECT_EQ(cv::norm(before, depth, cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(before, same, cv::NORM_INF), 10);
+  cv::Mat rounded;
+  same.convertTo(rounded, CV_32F, 1e-3);
+  EXPECT_LT(cv::norm(rounded, metres, cv::NORM_INF), 0.00051);
+  EXPECT_NEAR(metres.at<float>(5, 10), test::roomField().corrected(4.0, 10.5 / 64, 5.5 / 48), 1e-5);
+  EXPECT_TRUE(corrector.inMetres(cv::Mat(), 1e-3).empty());
 }
 
 }  // namespace

@@ -19,7 +19,6 @@ struct InputSettings {
   bool require_same_frame = true;
   double depth_unit_m = 1e-3;
   double depth_stamp_offset_s = 0.0;
-  std::string calibration;  ///< file that depth is corrected by; empty: none
   PairingSettings pairing;
 
   /// raw, compressed or compressedDepth.

@@ -16,7 +16,8 @@ struct MappingSettings {
   pf::Config config;
   bool lossless = false;
   MapSaverSettings saver;
-  std::string map_file;  ///< to begin in; empty: none
+  std::string map_file;          ///< to begin in; empty: none
+  std::string calibration_file;  ///< file that depth is corrected by; empty: none
   bool localize_only = false;
   bool continue_map = false;  ///< write that file on
 };
@@ -76,6 +77,7 @@ class MappingSession {
   void clear();
 
   pf::Config config_;
+  std::optional<pf::DepthCalibration> calibration_;  // of the camera, where it is known
   MapSaver saver_;
   std::unique_ptr<pf::Mapper> mapper_;
   pf::LoopExchange loops_;

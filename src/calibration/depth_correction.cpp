@@ -27,6 +27,15 @@ void correctRow(const std::uint16_t* in, const float* table, float unit_m, std::
 }
 
 POSEFUSION_SIMD_CLONES
+void correctRow(const std::uint16_t* in, const float* table, float unit_m, float* out, int count) {
+  for (int i = 0; i < count; ++i) {
+    const float z = static_cast<float>(in[i]) * unit_m;
+    const float inverse = 1.0F + z * table[i];
+    out[i] = inverse > 0.0F ? z / inverse : 0.0F;
+  }
+}
+
+POSEFUSION_SIMD_CLONES
 void correctRow(const float* in, const float* table, float* out, int count) {
   for (int i = 0; i < count; ++i) {
     const float z = in[i];
@@ -47,30 +56,55 @@ DepthCorrection::DepthCorrection(const DepthField& field, const cv::Size& size) 
   }
 }
 
-void DepthCorrection::apply(const cv::Mat& depth, double unit_m, cv::Mat& out) const {
+void DepthCorrection::require(const cv::Mat& depth) const {
   if (depth.size() != size_) throw std::invalid_argument("a depth image of another size");
   if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
     throw std::invalid_argument("a depth image that is neither CV_16UC1 nor CV_32FC1");
   }
+}
+
+void DepthCorrection::apply(const cv::Mat& depth, double unit_m, cv::Mat& out) const {
+  if (depth.type() == CV_32FC1) return applyInMetres(depth, unit_m, out);
+  require(depth);
   out.create(depth.size(), depth.type());
   for (int v = 0; v < depth.rows; ++v) {
-    const float* table = table_.data() + static_cast<std::size_t>(v) * depth.cols;
+    correctRow(depth.ptr<std::uint16_t>(v), row(v), static_cast<float>(unit_m),
+               out.ptr<std::uint16_t>(v), depth.cols);
+  }
+}
+
+void DepthCorrection::applyInMetres(const cv::Mat& depth, double unit_m, cv::Mat& out) const {
+  require(depth);
+  out.create(depth.size(), CV_32FC1);
+  for (int v = 0; v < depth.rows; ++v) {
+    auto* to = out.ptr<float>(v);
     if (depth.type() == CV_16UC1) {
-      correctRow(depth.ptr<std::uint16_t>(v), table, static_cast<float>(unit_m),
-                 out.ptr<std::uint16_t>(v), depth.cols);
+      correctRow(depth.ptr<std::uint16_t>(v), row(v), static_cast<float>(unit_m), to, depth.cols);
     } else {
-      correctRow(depth.ptr<float>(v), table, out.ptr<float>(v), depth.cols);
+      correctRow(depth.ptr<float>(v), row(v), to, depth.cols);
     }
   }
 }
 
-RgbdFrame FrameCorrector::correct(const RgbdFrame& frame) {
-  if (frame.depth.empty()) return frame;
-  if (frame.depth.type() != CV_16UC1 && frame.depth.type() != CV_32FC1) return frame;
-  if (table_.size() != frame.depth.size()) table_ = DepthCorrection(field_, frame.depth.size());
-  RgbdFrame corrected = frame;
-  corrected.depth = cv::Mat();
-  table_.apply(frame.depth, frame.depth_unit_m, corrected.depth);
+const DepthCorrection* DepthCorrector::tableFor(const cv::Mat& depth) {
+  if (depth.empty() || (depth.type() != CV_16UC1 && depth.type() != CV_32FC1)) return nullptr;
+  if (table_.size() != depth.size()) table_ = DepthCorrection(field_, depth.size());
+  return &table_;
+}
+
+cv::Mat DepthCorrector::inMetres(const cv::Mat& depth, double unit_m) {
+  const DepthCorrection* table = tableFor(depth);
+  if (table == nullptr) return depth;
+  cv::Mat corrected;
+  table->applyInMetres(depth, unit_m, corrected);
+  return corrected;
+}
+
+cv::Mat DepthCorrector::likeInput(const cv::Mat& depth, double unit_m) {
+  const DepthCorrection* table = tableFor(depth);
+  if (table == nullptr) return depth;
+  cv::Mat corrected;
+  table->apply(depth, unit_m, corrected);
   return corrected;
 }
 

@@ -35,6 +35,19 @@ Cubic cubicAt(double place, int count) {
            -intervals * (3 * s * s - 4 * s) / 2, intervals * t * t / 2}};
 }
 
+/// The integrals of the splines along one axis over [0, 1]: of each interval the four that are not
+/// zero there have 1, 11, 11 and 1 parts of 24.
+std::vector<double> sharesAlong(int count) {
+  const int intervals = count - 3;
+  std::vector<double> shares(static_cast<std::size_t>(count), 0.0);
+  for (int i = 0; i < intervals; ++i) {
+    const double parts[] = {1, 11, 11, 1};
+    for (int k = 0; k < 4; ++k) shares[static_cast<std::size_t>(i + k)] += parts[k];
+  }
+  for (double& share : shares) share /= 24.0 * intervals;
+  return shares;
+}
+
 /// Calls visit(x, y) for places spread over the image.
 template <typename Visit>
 void overImage(const Visit& visit) {
@@ -110,8 +123,18 @@ double DepthField::corrected(double z_m, double x, double y) const {
   return z_m > 0 && inverse > 0 ? z_m / inverse : 0.0;
 }
 
+std::vector<double> DepthField::shares() const {
+  const std::vector<double> across = sharesAlong(columns_), down = sharesAlong(rows_);
+  std::vector<double> shares;
+  for (const double row : down) {
+    for (const double column : across) shares.push_back(row * column);
+  }
+  return shares;
+}
+
 double DepthField::mean() const {
-  return std::accumulate(nodes_.begin(), nodes_.end(), 0.0) / static_cast<double>(nodes_.size());
+  const std::vector<double> counts = shares();
+  return std::inner_product(nodes_.begin(), nodes_.end(), counts.begin(), 0.0);
 }
 
 double DepthField::rms() const {

@@ -78,9 +78,13 @@ std::string doubtOf(const FieldEstimate& estimate) {
 
 FieldEstimate estimateField(const std::vector<CalibrationView>& views,
                             const FieldEstimateConfig& config) {
+  return estimateField(surfacesOf(views), config);
+}
+
+FieldEstimate estimateField(const std::vector<ViewSurface>& surfaces,
+                            const FieldEstimateConfig& config) {
   FieldEstimate estimate;
   estimate.field = DepthField(config.columns, config.rows);
-  const std::vector<ViewSurface> surfaces = surfacesOf(views);
   estimate.views = surfaces.size();
   std::vector<ViewPair> learned, judges;
   for (const ViewPair& pair : overlappingPairs(surfaces, config.pairs)) {

@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t kPairGrain = 16;
 
+/// A step of the field that is so small a part of what an uncalibrated camera has is the last.
+constexpr double kConverged = 0.002;
+
 /// Half of |x| of a standard normal variable is below it.
 constexpr double kMedianOfNormal = 0.6745;
 
@@ -43,11 +46,12 @@ void addPrior(const DepthField& field, const FieldEstimateConfig& config, FieldE
 /// What the field leaves unexplained (1/m): such that half of the residuals are within the median
 /// of a normal distribution.
 double restOf(const std::vector<ViewPair>& pairs, const std::vector<ViewSurface>& surfaces,
-              const DepthField& field, const std::vector<Vector6d>& poses, double most) {
+              const DepthField& field, const std::vector<Vector6d>& poses, const PairModel& model,
+              double most) {
   std::vector<std::vector<Judged>> of_pair(pairs.size());
   parallelFor(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      of_pair[i] = residualsOf(pairs[i], surfaces, field, poses[i]);
+      of_pair[i] = residualsOf(pairs[i], surfaces, field, poses[i], model);
     }
   });
   std::size_t count = 0;
@@ -77,13 +81,14 @@ struct Step {
 
 Step solveStep(const FieldEquations& sum, const DepthField& field) {
   const Eigen::Index n = sum.g.size();
+  const std::vector<double> shares = field.shares();
+  const Eigen::VectorXd mean = Eigen::Map<const Eigen::VectorXd>(shares.data(), n);
   const Eigen::MatrixXd inverse = sum.H.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n), toward = inverse * ones;
-  const double stiffness = ones.dot(toward);
+  const Eigen::VectorXd toward = inverse * mean;
+  const double stiffness = mean.dot(toward);
   Step result;
   result.inverse = inverse - toward * toward.transpose() / stiffness;
-  result.step =
-      -result.inverse * sum.g - toward * (static_cast<double>(n) * field.mean() / stiffness);
+  result.step = -result.inverse * sum.g - toward * (field.mean() / stiffness);
   return result;
 }
 
@@ -172,12 +177,13 @@ FieldSolution solveField(const std::vector<ViewPair>& pairs,
   FieldSolution solution;
   solution.field = DepthField(config.columns, config.rows);
   solution.model = config.model;
+  solution.model.patches = config.most_patches / (2 * std::max<std::size_t>(1, pairs.size()));
   std::vector<Vector6d> poses(pairs.size(), Vector6d::Zero());
   std::vector<PairStep> steps(pairs.size());
-  for (int i = 0; i < config.steps; ++i) {
+  for (int i = 0; i < config.most_steps; ++i) {
     if (i > 0) {
       solution.model.rest_per_m =
-          restOf(pairs, surfaces, solution.field, poses, config.model.rest_per_m);
+          restOf(pairs, surfaces, solution.field, poses, solution.model, config.model.rest_per_m);
     }
     FieldEquations sum = equationsOf(pairs, surfaces, solution.field, poses, solution.model, steps);
     addPrior(solution.field, config, sum);
@@ -187,6 +193,7 @@ FieldSolution solveField(const std::vector<ViewPair>& pairs,
       poses[k] += steps[k].own + steps[k].by_field * step.step;
     }
     solution.residuals = sum.residuals;
+    if (i > 1 && step.step.cwiseAbs().maxCoeff() < kConverged * config.node_sigma_per_m) break;
   }
   solution.field = solution.field.centred();
   solution.covariance = scatterOf(pairs, surfaces, config, solution, poses);
@@ -203,7 +210,7 @@ KeptOut judgeField(const std::vector<ViewPair>& pairs, const std::vector<ViewSur
   parallelFor(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto fit = [&](const DepthField& f) {
-        return residualsOf(pairs[i], surfaces, f, fittedPose(pairs[i], surfaces, f, model));
+        return residualsOf(pairs[i], surfaces, f, fittedPose(pairs[i], surfaces, f, model), model);
       };
       before[i] = fit(none);
       after[i] = fit(field);

@@ -11,27 +11,28 @@ namespace {
 
 using PoseFieldBlock = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-// Of a view that many patches are compared, spread over it: about nineteen for a cell of the grid.
-constexpr std::size_t kPatches = 1000;
+// Cells of a grid of 12 x 9 splines: the outermost do not reach into the image.
+constexpr double kCells = 9 * 6;
 
 template <typename Visit>
-void forSome(const std::vector<SurfacePatch>& patches, const Visit& visit) {
-  const std::size_t count = std::min(patches.size(), kPatches);
+void forSome(const std::vector<SurfacePatch>& patches, std::size_t most, const Visit& visit) {
+  const std::size_t count = std::min(patches.size(), most);
   for (std::size_t i = 0; i < count; ++i) visit(patches[i * patches.size() / count]);
 }
 
 /// Calls visit(residual, by_x) for the patches of both views; by_x: derivative by the pair's twist.
 template <typename Visit>
 void forResiduals(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                  const DepthField& field, const Vector6d& x, const Visit& visit) {
+                  const DepthField& field, const Vector6d& x, std::size_t patches,
+                  const Visit& visit) {
   const ViewSurface &a = surfaces[pair.from], &b = surfaces[pair.to];
   const Eigen::Isometry3d T_b_a = expSe3(x) * pair.T_to_from, T_a_b = T_b_a.inverse();
-  forSome(a.patches(), [&](const SurfacePatch& patch) {
+  forSome(a.patches(), patches, [&](const SurfacePatch& patch) {
     if (const auto r = pairResidual(patch, a, b, T_b_a, field)) visit(*r, r->by_pose);
   });
   // exp(d) T_b_a is T_a_b exp(-d) the other way: exp(-Ad d) T_a_b.
   const Matrix6d back = -adjoint(T_a_b).transpose();
-  forSome(b.patches(), [&](const SurfacePatch& patch) {
+  forSome(b.patches(), patches, [&](const SurfacePatch& patch) {
     if (const auto r = pairResidual(patch, b, a, T_a_b, field)) {
       visit(*r, Vector6d(back * r->by_pose));
     }
@@ -47,9 +48,16 @@ struct PairSums {
   Matrix6d P;
   Vector6d p;
   PoseFieldBlock C;
+  // Of the field: with its mirror image, and the products of each node with itself.
+  Eigen::MatrixXd half;
+  Eigen::VectorXd squares;
 
   PairSums(Eigen::Index nodes, const Vector6d& x, const PairModel& model)
-      : P(Matrix6d::Zero()), p(Vector6d::Zero()), C(PoseFieldBlock::Zero(6, nodes)) {
+      : P(Matrix6d::Zero()),
+        p(Vector6d::Zero()),
+        C(PoseFieldBlock::Zero(6, nodes)),
+        half(Eigen::MatrixXd::Zero(nodes, nodes)),
+        squares(Eigen::VectorXd::Zero(nodes)) {
     // A pose that is held has no variance: then nothing must move it.
     const double m = std::max(model.pose_sigma_m, 1e-9), rad = std::max(model.pose_sigma_rad, 1e-9);
     Vector6d information;
@@ -76,8 +84,8 @@ struct NodeRow {
   }
 };
 
-void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, FieldEquations& sum,
-                 PairSums& pair, Eigen::VectorXd& g) {
+void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, PairSums& pair,
+                 Eigen::VectorXd& g) {
   const NodeRow row(r);
   const Vector6d weighted = weight * by_x;
   pair.P.noalias() += weighted * by_x.transpose();
@@ -86,13 +94,15 @@ void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, Fie
     pair.C.col(row.node[i]) += weighted * row.value[i];
     const double wi = weight * row.value[i];
     g[row.node[i]] += wi * r.e;
-    for (std::size_t j = 0; j < NodeRow::kNodes; ++j)
-      sum.H(row.node[i], row.node[j]) += wi * row.value[j];
+    double* column = pair.half.col(row.node[i]).data();
+    for (std::size_t j = 0; j < i; ++j) column[row.node[j]] += wi * row.value[j];
+    pair.squares[row.node[i]] += wi * row.value[i];
   }
-  ++sum.residuals;
 }
 
 }  // namespace
+
+double PairModel::patchesOfCell() const { return static_cast<double>(patches) / kCells; }
 
 double Judged::loss(const PairModel& model) const {
   const double rest = model.rest_per_m * model.rest_per_m * share;
@@ -103,13 +113,14 @@ double Judged::loss(const PairModel& model) const {
 double Judged::weight(const PairModel& model) const {
   const double rest = model.rest_per_m * model.rest_per_m * share;
   const double x = e * e / ((variance + rest) * model.robust_scale * model.robust_scale);
-  return 1.0 / ((variance + model.patches_of_cell * rest) * (1.0 + x) * (1.0 + x));
+  return 1.0 / ((variance + model.patchesOfCell() * rest) * (1.0 + x) * (1.0 + x));
 }
 
 std::vector<Judged> residualsOf(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                                const DepthField& field, const Vector6d& x) {
+                                const DepthField& field, const Vector6d& x,
+                                const PairModel& model) {
   std::vector<Judged> all;
-  forResiduals(pair, surfaces, field, x,
+  forResiduals(pair, surfaces, field, x, model.patches,
                [&](const PairResidual& r, const Vector6d&) { all.push_back(judged(r)); });
   return all;
 }
@@ -133,9 +144,13 @@ void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
   }
   PairSums sums(nodes, x, model);
   step.g.setZero(nodes);
-  forResiduals(pair, surfaces, field, x, [&](const PairResidual& r, const Vector6d& by_x) {
-    addResidual(r, by_x, judged(r).weight(model), equations, sums, step.g);
-  });
+  forResiduals(pair, surfaces, field, x, model.patches,
+               [&](const PairResidual& r, const Vector6d& by_x) {
+                 addResidual(r, by_x, judged(r).weight(model), sums, step.g);
+                 ++equations.residuals;
+               });
+  equations.H += sums.half + sums.half.transpose();
+  equations.H.diagonal() += sums.squares;
   const Eigen::LDLT<Matrix6d> P(sums.P);
   step.own = -P.solve(sums.p);
   step.by_field = -P.solve(sums.C);
@@ -150,11 +165,12 @@ Vector6d fittedPose(const ViewPair& pair, const std::vector<ViewSurface>& surfac
   Vector6d x = Vector6d::Zero();
   for (int i = 0; i < kSteps; ++i) {
     PairSums sums(0, x, model);
-    forResiduals(pair, surfaces, field, x, [&](const PairResidual& r, const Vector6d& by_x) {
-      const double weight = judged(r).weight(model);
-      sums.P.noalias() += weight * by_x * by_x.transpose();
-      sums.p += weight * r.e * by_x;
-    });
+    forResiduals(pair, surfaces, field, x, model.patches,
+                 [&](const PairResidual& r, const Vector6d& by_x) {
+                   const double weight = judged(r).weight(model);
+                   sums.P.noalias() += weight * by_x * by_x.transpose();
+                   sums.p += weight * r.e * by_x;
+                 });
     x -= sums.P.ldlt().solve(sums.p);
   }
   return x;

@@ -73,9 +73,31 @@ PoseGraph::Attempt PoseGraph::attempt(const std::vector<Keyframe>& from,
   const std::vector<std::size_t> first = firstOfParts(from.size(), all);
   std::set<std::size_t> touched;
   for (const PoseConstraint& c : loops) touched.insert(first[static_cast<std::size_t>(c.from)]);
+  Attempt result = solve(from, all, first, touched);
+  if (result.reason.empty()) result.reason = objection(result.errors, loops.size());
+  return result;
+}
+
+/// All parts of the graph, with the constraints that hold.
+PoseGraph::Attempt PoseGraph::attemptAll() const {
+  const std::vector<std::size_t> first = firstOfParts(keyframes_.size(), constraints_);
+  Attempt result = solve(keyframes_, constraints_, first, {first.begin(), first.end()});
+  for (const GraphResult::Error& e : result.errors) {
+    if (result.reason.empty() && !(e.after <= config_.max_chi_square)) {
+      result.reason = missText(e.constraint, e.after, config_.max_chi_square);
+    }
+  }
+  return result;
+}
+
+/// Moves the keyframes of the connected parts named by their first keyframes.
+PoseGraph::Attempt PoseGraph::solve(const std::vector<Keyframe>& from,
+                                    const std::vector<PoseConstraint>& all,
+                                    const std::vector<std::size_t>& first,
+                                    const std::set<std::size_t>& parts) const {
   std::vector<PoseConstraint> solved;
   for (const PoseConstraint& c : all) {
-    if (touched.count(first[static_cast<std::size_t>(c.from)]) > 0) solved.push_back(c);
+    if (parts.count(first[static_cast<std::size_t>(c.from)]) > 0) solved.push_back(c);
   }
   std::vector<bool> fixed(from.size());
   std::vector<Eigen::Isometry3d> poses;
@@ -90,7 +112,6 @@ PoseGraph::Attempt PoseGraph::attempt(const std::vector<Keyframe>& from,
   for (const PoseConstraint& c : all) {
     result.errors.push_back({c, chiSquare(c, keyframes_), chiSquare(c, result.keyframes)});
   }
-  if (result.reason.empty()) result.reason = objection(result.errors, loops.size());
   return result;
 }
 
@@ -197,6 +218,30 @@ GraphResult PoseGraph::optimise() {
   constraints_.insert(constraints_.end(), loops.begin(), loops.end());
   GraphResult result;
   result.reason = kConfirms;
+  return result;
+}
+
+GraphResult PoseGraph::remeasure(const std::vector<PoseConstraint>& constraints) {
+  const std::vector<PoseConstraint> before = constraints_;
+  for (const PoseConstraint& fresh : constraints) {
+    const auto old = std::find_if(constraints_.begin(), constraints_.end(), [&](const auto& c) {
+      return c.from == fresh.from && c.to == fresh.to && c.kind == fresh.kind;
+    });
+    if (old == constraints_.end()) continue;
+    PoseConstraint checked = checkedLoop(fresh);
+    checked.kind = fresh.kind;
+    *old = checked;
+  }
+  GraphResult result;
+  Attempt tried = attemptAll();
+  result.reason = tried.reason;
+  if (result.reason.empty() && isWorthMoving(tried.keyframes)) {
+    accept(tried, result);
+  } else if (!result.reason.empty()) {
+    constraints_ = before;
+  } else {
+    result.reason = kConfirms;
+  }
   return result;
 }
 

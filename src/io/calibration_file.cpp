@@ -67,8 +67,8 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-DepthCalibration loadCalibration(const std::string& path) {
-  YamlMap map(parseYaml(readFile(path), path), path + ": ");
+DepthCalibration parseCalibration(const std::string& text, const std::string& origin) {
+  YamlMap map(parseYaml(text, origin), origin + ": ");
   DepthCalibration calibration;
   if (!map.has("model")) map.fail("model", "is missing, expected " + std::string(kModel));
   map.word("model", kModel, {kModel});
@@ -83,15 +83,18 @@ DepthCalibration loadCalibration(const std::string& path) {
   try {
     validate(calibration.camera);
   } catch (const InputError& error) {
-    throw InputError(path + ": image: " + error.what());
+    throw InputError(origin + ": image: " + error.what());
   }
   return calibration;
 }
 
-void saveCalibration(const std::string& path, const DepthCalibration& calibration) {
+DepthCalibration loadCalibration(const std::string& path) {
+  return parseCalibration(readFile(path), path);
+}
+
+std::string calibrationText(const DepthCalibration& calibration) {
   const PinholeCamera& c = calibration.camera;
-  AtomicFile file(path);
-  std::ostream& out = file.stream();
+  std::ostringstream out;
   out << std::setprecision(10)
       << "# Systematic error of a depth camera: 1/z_true = 1/z + d(u, v), a cubic spline over the "
          "image.\n"
@@ -109,28 +112,13 @@ void saveCalibration(const std::string& path, const DepthCalibration& calibratio
     out << (i == 0 ? "\n  " : i % columns == 0 ? ",\n  " : ", ") << nodes[i];
   }
   out << "]\n";
-  file.commit();
+  return out.str();
 }
 
-std::string misfit(const DepthCalibration& calibration, const PinholeCamera& camera) {
-  const PinholeCamera& own = calibration.camera;
-  const auto shift = [](double f_own, double c_own, int size_own, double f, double c, int size) {
-    // Rays at both borders of the images, in parts of their width.
-    double most = 0;
-    for (const double border : {0.0, 1.0}) {
-      const double ray = (border * size_own - 0.5 - c_own) / f_own;
-      most = std::max(most, std::abs((f * ray + c + 0.5) / size - border));
-    }
-    return most;
-  };
-  const double x = shift(own.fx, own.cx, own.width, camera.fx, camera.cx, camera.width);
-  const double y = shift(own.fy, own.cy, own.height, camera.fy, camera.cy, camera.height);
-  if (x < 0.5 / (DepthField::kColumns - 1) && y < 0.5 / (DepthField::kRows - 1)) return {};
-  std::ostringstream text;
-  text << "is of a camera of another view (" << own.width << " x " << own.height << ", fx "
-       << own.fx << ") than the frames (" << camera.width << " x " << camera.height << ", fx "
-       << camera.fx << ")";
-  return text.str();
+void saveCalibration(const std::string& path, const DepthCalibration& calibration) {
+  AtomicFile file(path);
+  file.stream() << calibrationText(calibration);
+  file.commit();
 }
 
 }  // namespace pf

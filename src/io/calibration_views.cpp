@@ -5,6 +5,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/map_database.hpp"
+#include "posefusion/io/saved_map_file.hpp"
 
 namespace pf {
 
@@ -13,6 +14,7 @@ CalibrationViews readCalibrationViews(const std::string& map_file) {
   const MapContent content = reader.content();
   CalibrationViews all;
   all.camera = content.camera;
+  all.corrected_by = calibrationOf(content);
   for (const Keyframe& keyframe : content.keyframes) {
     KeyframeImages images = reader.images(keyframe.id);
     if (images.depth_mm.empty()) continue;

@@ -8,6 +8,7 @@
 #include "map_encoding.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/io/calibration_file.hpp"
 
 namespace pf {
 namespace {
@@ -17,6 +18,7 @@ constexpr std::chrono::milliseconds kPeriod{500};
 
 // Name of the blob that holds Mapper::placed().
 constexpr char kPlace[] = "T_world_map";
+constexpr char kCalibration[] = "calibration";
 
 constexpr std::size_t kPixels = std::size_t{Thumbnail::kWidth} * Thumbnail::kHeight;
 constexpr std::size_t kThumbnailBytes = 1 + kPixels * (3 + sizeof(float));
@@ -70,6 +72,7 @@ SavedMap savedMap(const MapReader& reader) {
   MapContent content = reader.content();
   SavedMap map;
   map.T_world_map = placeOf(content);
+  map.calibration = calibrationOf(content);
   map.camera = content.camera;
   map.brightness = content.brightness;
   map.surfels = reader.surfels();
@@ -92,6 +95,12 @@ std::optional<Eigen::Isometry3d> placeOf(const MapContent& content) {
   return T_world_map;
 }
 
+std::optional<DepthCalibration> calibrationOf(const MapContent& content) {
+  const auto blob = content.blobs.find(kCalibration);
+  if (blob == content.blobs.end()) return std::nullopt;
+  return parseCalibration(blob->second, "its calibration of depth");
+}
+
 SavedMap readSavedMap(const std::string& path) {
   try {
     return savedMap(MapReader(path));
@@ -99,6 +108,14 @@ SavedMap readSavedMap(const std::string& path) {
     const std::string text = error.what(), name = path + ": ";
     throw InputError(text.rfind(name, 0) == 0 ? text : name + text);
   }
+}
+
+std::optional<PinholeCamera> firstCamera(FrameSource& frames) {
+  while (const auto next = frames.next()) {
+    if (!next->defect.empty() || !defectOf(next->frame).empty()) continue;
+    return Rectifier().rectify(next->frame).camera;
+  }
+  return std::nullopt;
 }
 
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
@@ -110,11 +127,8 @@ std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
 
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,
                          const std::string& whose) {
-  while (const auto next = frames.next()) {
-    if (!next->defect.empty() || !defectOf(next->frame).empty()) continue;
-    return cameraDefect(file, of_map, Rectifier().rectify(next->frame).camera, whose);
-  }
-  return {};
+  const auto camera = firstCamera(frames);
+  return camera ? cameraDefect(file, of_map, *camera, whose) : "";
 }
 
 MapRecording::MapRecording(const std::string& path, MapWriter::Mode mode, std::string settings,
@@ -150,7 +164,7 @@ bool MapRecording::finish(const Mapper& mapper) {
 
 MapRecording::Written MapRecording::amountOf(const Mapper& mapper) {
   return {mapper.map().frame(), mapper.backEnd().frames().size(),
-          static_cast<int>(mapper.backEnd().graph().keyframes().size())};
+          static_cast<int>(mapper.backEnd().graph().keyframes().size()), mapper.depthVersion()};
 }
 
 /// All that the file does not have yet.
@@ -167,10 +181,12 @@ MapUpdate MapRecording::changes(const Mapper& mapper) const {
   update.constraints = graph.constraints();
   update.frames.assign(frames.begin() + static_cast<std::ptrdiff_t>(written_.frames), frames.end());
   for (const KeyframeView& view : mapper.keyframeViews()) {
-    if (view.id < written_.keyframes) continue;
+    const bool is_known = view.id < written_.keyframes;
+    if (is_known && written_.depth_version == mapper.depthVersion()) continue;
     update.images.push_back({static_cast<int>(view.id), view.intensity, view.depth_mm});
     update.blobs[blobName(view.id)] = encodeThumbnail(view);
   }
+  if (mapper.calibration()) update.blobs[kCalibration] = calibrationText(*mapper.calibration());
   if (mapper.placed()) update.blobs[kPlace] = encode(*mapper.placed());
   update.block_count = static_cast<std::uint32_t>(mapper.map().blocks().size());
   update.blocks = changedBlocks(mapper.map(), written_.frame);

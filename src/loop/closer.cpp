@@ -162,6 +162,27 @@ std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id,
   return LoopConstraint{id, keyframes_.back().view.id, T, forth.alignment.covariance};
 }
 
+std::vector<PoseConstraint> LoopCloser::remeasure(const std::vector<PoseConstraint>& constraints) {
+  const auto viewOf = [&](int id) -> const KeyframeView* {
+    const auto found =
+        std::lower_bound(keyframes_.begin(), keyframes_.end(), id,
+                         [](const Keyframe& k, int number) { return k.view.id < number; });
+    return found != keyframes_.end() && found->view.id == id ? &found->view : nullptr;
+  };
+  std::vector<PoseConstraint> measured;
+  for (const PoseConstraint& c : constraints) {
+    const KeyframeView *from = viewOf(c.from), *to = viewOf(c.to);
+    if (from == nullptr || to == nullptr) continue;
+    from_.assign(*from);
+    to_.assign(*to);
+    const PlaceVerdict verdict = aligner_.align(from_, to_, c.T_from_to);
+    if (!verdict.accepted()) continue;
+    measured.push_back(
+        {c.from, c.to, verdict.alignment.T_map_camera, verdict.alignment.covariance, c.kind});
+  }
+  return measured;
+}
+
 std::vector<LoopConstraint> LoopCloser::findLoops() {
   std::vector<LoopConstraint> loops;
   if (!config_.enabled || keyframes_.empty()) return loops;

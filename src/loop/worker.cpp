@@ -59,23 +59,66 @@ std::optional<Eigen::Isometry3d> standing(const std::vector<Eigen::Isometry3d>& 
 
 }  // namespace
 
-LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking)
-    : config_(config), tracking_(tracking), closer_(config, tracking), verifier_(tracking) {}
+LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking,
+                       const CalibrationConfig& calibration)
+    : config_(config),
+      tracking_(tracking),
+      calibration_(calibration),
+      closer_(config, tracking),
+      verifier_(tracking) {}
+
+void LoopWorker::begin() {
+  closer_ = LoopCloser(config_, tracking_);
+  learner_ = FieldLearner();
+}
+
+void LoopWorker::addKeyframe(const KeyframeView& view) {
+  closer_.addKeyframe(view);
+  if (!calibration_.learns()) return;
+  CalibrationView seen;
+  seen.id = static_cast<int>(view.id);
+  seen.camera = view.camera;
+  seen.T_map_camera = view.pose.T_map_camera;
+  seen.fragment = view.pose.fragment;
+  seen.depth_mm = view.depth_mm;
+  learner_.add(seen);
+}
+
+void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
+  answer.depth_version = question.depth_version;
+  if (!calibration_.learns() || !(question.keyframe || question.calibrates)) return;
+  const auto estimate =
+      question.calibrates ? std::optional<FieldEstimate>(learner_.estimate()) : learner_.learn();
+  if (!estimate) return;
+  answer.calibration_doubt = estimate->reason;
+  if (!estimate->worth_taking) return;
+  answer.calibration.emplace();
+  answer.calibration->field = estimate->field;
+  answer.calibration->keyframes = estimate->views;
+  answer.calibration->pairs = estimate->pairs;
+  answer.calibration->before_mm = estimate->kept_out.before_mm;
+  answer.calibration->after_mm = estimate->kept_out.after_mm;
+}
 
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
   if (question.known) {
-    closer_ = LoopCloser(config_, tracking_);
-    for (const KeyframeView& view : *question.known) closer_.addKeyframe(view);
+    begin();
+    for (const KeyframeView& view : *question.known) addKeyframe(view);
   }
-  if (!question.corrected.empty()) closer_.setPoses(question.corrected);
+  if (!question.corrected.empty()) {
+    closer_.setPoses(question.corrected);
+    learner_.setPoses(question.corrected);
+  }
+  answer.remeasured = closer_.remeasure(question.remeasured);
   if (question.keyframe) {
-    if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
+    if (question.keyframe->id == 0) begin();  // a new map
     Stopwatch watch;
-    closer_.addKeyframe(*question.keyframe);
+    addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();
     answer.verification_ms = watch.lapMs();
   }
+  learn(question, answer);
   if (question.place) {
     answer.asked_for_place = true;
     answer.place = findPlace(*question.place);

@@ -2,7 +2,6 @@
 #include "posefusion/map/deform.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -36,19 +35,21 @@ class Motions {
     });
   }
 
-  /// Moves surfel i of a block; false when its correction is the identity. `k` is where the search
-  /// begins: neighbours are mostly of one frame.
-  bool apply(SurfelBlock& block, std::size_t i, std::size_t& k) const {
+  /// Moves the surfels of a block whose correction is not the identity.
+  void apply(SurfelBlock& block, std::vector<char>& moved) const {
     SurfelArrays& s = block.surfels;
-    const Origin origin(block.fragment, s.created[i]);
-    if (origins_[k] != origin) {
-      const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
-      k = static_cast<std::size_t>(found - origins_.begin());
+    std::size_t k = 0;  // where the search begins: neighbours are mostly of one frame
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const Origin origin(block.fragment, s.created[i]);
+      if (origins_[k] != origin) {
+        const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
+        k = static_cast<std::size_t>(found - origins_.begin());
+      }
+      if (moves_[k] == 0) continue;
+      motions_[k].point(s.x[i], s.y[i], s.z[i], s.x[i], s.y[i], s.z[i]);
+      motions_[k].direction(s.nx[i], s.ny[i], s.nz[i], s.nx[i], s.ny[i], s.nz[i]);
+      moved[i] = 1;
     }
-    if (moves_[k] == 0) return false;
-    motions_[k].point(s.x[i], s.y[i], s.z[i], s.x[i], s.y[i], s.z[i]);
-    motions_[k].direction(s.nx[i], s.ny[i], s.nz[i], s.nx[i], s.ny[i], s.nz[i]);
-    return true;
   }
 
  private:
@@ -63,36 +64,8 @@ class Motions {
 void deform(SurfelMap& map, const Deformation& deformation) {
   if (deformation.isIdentity()) return;
   const Motions motions(map, deformation);
-  std::vector<SurfelMap::Cell> cells(map.blocks_.size());
-  for (const auto& [cell, block] : map.index_) cells[block] = cell;
-  std::vector<SurfelArrays> gone(map.blocks_.size());  // out of each block
-  parallelFor(map.blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      SurfelBlock& block = map.blocks_[b];
-      const SurfelArrays& s = block.surfels;
-      const int fragment = deformation.fragmentAfter(block.fragment);
-      std::vector<std::uint32_t> stay, leave;
-      bool any = fragment != block.fragment;
-      std::size_t hint = 0;
-      for (std::size_t i = 0; i < s.size(); ++i) {
-        const bool moved = motions.apply(block, i, hint);
-        any |= moved;
-        const bool left = fragment != block.fragment ||
-                          (moved && !(map.cellAt(fragment, s.x[i], s.y[i], s.z[i]) == cells[b]));
-        (left ? leave : stay).push_back(static_cast<std::uint32_t>(i));
-      }
-      if (!any) continue;
-      gone[b].append(s, leave.data(), leave.size());
-      map.keepOnly(stay, block);
-    }
-  });
-  map.countMemory();
-  std::map<int, SurfelArrays> all;  // by their new fragment
-  for (std::size_t b = 0; b < gone.size(); ++b) {
-    all[deformation.fragmentAfter(map.blocks_[b].fragment)].append(gone[b]);
-    gone[b] = {};
-  }
-  for (const auto& [fragment, surfels] : all) map.add(surfels, fragment);
+  map.move([&](SurfelBlock& block, std::vector<char>& moved) { motions.apply(block, moved); },
+           [&](int fragment) { return deformation.fragmentAfter(fragment); });
 }
 
 }  // namespace pf

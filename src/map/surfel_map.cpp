@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -163,6 +164,40 @@ void SurfelMap::keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& bl
   block.bounds.setEmpty();
   block.largest_radius = 0;
   fit(block.surfels, 0, block);
+}
+
+void SurfelMap::move(const Mover& mover, const std::function<int(int)>& fragment_after) {
+  std::vector<Cell> cells(blocks_.size());
+  for (const auto& [cell, block] : index_) cells[block] = cell;
+  std::vector<SurfelArrays> gone(blocks_.size());  // out of each block
+  parallelFor(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      SurfelBlock& block = blocks_[b];
+      const SurfelArrays& s = block.surfels;
+      const int fragment = fragment_after(block.fragment);
+      std::vector<char> moved(s.size(), 0);
+      mover(block, moved);
+      std::vector<std::uint32_t> stay, leave;
+      bool any = fragment != block.fragment;
+      for (std::size_t i = 0; i < s.size(); ++i) {
+        any |= moved[i] != 0;
+        const bool left =
+            fragment != block.fragment ||
+            (moved[i] != 0 && !(cellAt(fragment, s.x[i], s.y[i], s.z[i]) == cells[b]));
+        (left ? leave : stay).push_back(static_cast<std::uint32_t>(i));
+      }
+      if (!any) continue;
+      gone[b].append(s, leave.data(), leave.size());
+      keepOnly(stay, block);
+    }
+  });
+  countMemory();
+  std::map<int, SurfelArrays> all;  // by their new fragment
+  for (std::size_t b = 0; b < gone.size(); ++b) {
+    all[fragment_after(blocks_[b].fragment)].append(gone[b]);
+    gone[b] = {};
+  }
+  for (const auto& [fragment, surfels] : all) add(surfels, fragment);
 }
 
 void SurfelMap::countMemory() {

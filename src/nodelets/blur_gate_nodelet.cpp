@@ -9,7 +9,6 @@
 
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/core/error.hpp"
-#include "posefusion/io/calibrated_source.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/conversions.hpp"
@@ -39,7 +38,6 @@ class BlurGateNodelet : public ChainNodelet {
     missing_after_s_ = parameters.number("missing_after_s", 5.0, {0.1, 1e6});
     report(parameters);
 
-    if (!input_.calibration.empty()) correction_.emplace(input_.calibration);
     gate_ = std::make_unique<pf::BlurGate>(config_);
     InputPairing::Handlers handlers;
     handlers.set = [this](const InputPairing::Set& set) {
@@ -100,8 +98,7 @@ class BlurGateNodelet : public ChainNodelet {
       throw pf::InputError("colour is in frame '" + color_frame + "' but depth in '" + depth_frame +
                            "', expected depth registered to colour");
     }
-    pf::RgbdFrame straight = rectifier_.rectify(frameOf(set));
-    if (correction_) straight = correction_->correct(straight);
+    const pf::RgbdFrame straight = rectifier_.rectify(frameOf(set));
     const pf::BlurScore blur =
         gate_->judge(pf::measureSharpness(straight.color), straight.stamp_ns);
     publishScore(header, blur);
@@ -197,7 +194,6 @@ class BlurGateNodelet : public ChainNodelet {
   std::string clock_defect_;  ///< of the last frame
   GrowingPause missing_pause_, clock_pause_;
   pf::Rectifier rectifier_;
-  std::optional<pf::CalibratedFrames> correction_;
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;

@@ -46,7 +46,6 @@ void visitFields(InputSettings& s, pf::FieldVisitor& v) {
   v.number("depth_unit_m", s.depth_unit_m, 1e-6, 1.0, "of 16-bit depth");
   v.number("depth_stamp_offset_s", s.depth_stamp_offset_s, -10.0, 10.0,
            "added to the stamps of depth before they are compared with those of colour");
-  v.text("calibration", s.calibration, "file of posefusion_calibrate that depth is corrected by");
   PairingSettings& p = s.pairing;
   v.integer("queue_size", p.queue_size, 1, 10000, "images that wait for their partner");
   v.flag("approximate_sync", p.approximate, "false: equal stamps only");

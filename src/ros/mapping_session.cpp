@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/calibration_file.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -21,11 +22,12 @@ pf::AnswerTime answerTime(bool lossless) {
 
 MappingSettings readMapping(Parameters& parameters) {
   MappingSettings s;
-  s.config = parameters.config({"frame", "tracking", "map", "loop", "graph"});
+  s.config = parameters.config({"frame", "tracking", "map", "loop", "graph", "calibration"});
   s.lossless = parameters.flag("lossless", false);
   s.saver = readMapSaver(parameters);
   s.saver.settings = pf::toYaml(s.config);
   s.map_file = parameters.text("map_file", "");
+  s.calibration_file = parameters.text("calibration_file", "");
   s.localize_only = parameters.flag("localize_only", false);
   s.continue_map = parameters.flag("continue_map", false);
   if (s.map_file.empty() && (s.localize_only || s.continue_map)) {
@@ -44,6 +46,10 @@ MappingSession::MappingSession(const MappingSettings& settings,
       mapper_(std::make_unique<pf::Mapper>(settings.config)),
       loops_(settings.config.loop.answer_lag_frames, answerTime(settings.lossless),
              std::move(closer)) {
+  if (!settings.calibration_file.empty()) {
+    calibration_ = pf::loadCalibration(settings.calibration_file);
+    mapper_->calibrate(*calibration_);
+  }
   if (settings.map_file.empty()) return;
   use_ = settings.localize_only ? MapUse::localize_only : MapUse::extend;
   pf::SavedMap saved = pf::readSavedMap(settings.map_file);
@@ -90,6 +96,7 @@ std::unique_ptr<pf::Mapper> MappingSession::begunIn(pf::SavedMap map, const std:
                                                     MapUse use) {
   auto mapper = std::make_unique<pf::Mapper>(config_);
   try {
+    if (calibration_) mapper->calibrate(*calibration_);
     mapper->load(std::move(map), use);
   } catch (const InputError& error) {
     throw InputError(file + ": " + error.what());

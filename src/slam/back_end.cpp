@@ -79,6 +79,12 @@ std::vector<Deformation> BackEnd::close(const std::vector<LoopConstraint>& loops
   return deformations;
 }
 
+Deformation BackEnd::remeasure(const std::vector<PoseConstraint>& constraints) {
+  GraphResult result = graph_.remeasure(constraints);
+  counts_.accepted += result.accepted ? 1 : 0;
+  return result.accepted ? std::move(result.deformation) : Deformation();
+}
+
 Trajectory BackEnd::trajectory() const {
   Trajectory poses;
   poses.reserve(frames_.size() - loaded_frames_);

@@ -29,6 +29,7 @@ void visitFields(Config& config, FieldVisitor& visitor) {
   visitGroup("map", config.map, visitor);
   visitGroup("loop", config.loop, visitor);
   visitGroup("graph", config.graph, visitor);
+  visitGroup("calibration", config.calibration, visitor);
 }
 
 void applyYaml(Config& config, const YAML::Node& node, const std::string& origin) {

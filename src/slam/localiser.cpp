@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "posefusion/calibration/depth_correction.hpp"
+
 namespace pf {
 namespace {
 
@@ -214,6 +216,11 @@ void Localiser::move(const Eigen::Isometry3d& T_new_old, int fragment) {
   previous_.fragment = located_.fragment = fragment;
   carried_.T_map_camera = T_new_old * carried_.T_map_camera;
   landmarks_.move(T_new_old);
+}
+
+void Localiser::correctDepth(const DepthField& step) {
+  previous_.depth_m = DepthCorrector(step).inMetres(previous_.depth_m, 1.0);
+  landmarks_.clear();  // where they are seen now is not where they were
 }
 
 void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,

@@ -11,8 +11,8 @@ namespace {
 
 class ThreadResponder : public LoopResponder {
  public:
-  ThreadResponder(const LoopConfig& config, const TrackingConfig& tracking)
-      : worker_(std::make_shared<LoopWorker>(config, tracking)) {}
+  explicit ThreadResponder(const Config& config)
+      : worker_(std::make_shared<LoopWorker>(config.loop, config.tracking, config.calibration)) {}
 
   void ask(LoopQuestion question) override {
     // Each question waits for the one before: the worker sees them in their order. A future holds
@@ -46,8 +46,8 @@ class ThreadResponder : public LoopResponder {
 
 }  // namespace
 
-LoopThread::LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time)
-    : LoopExchange(config.answer_lag_frames, time,
-                   std::make_unique<ThreadResponder>(config, tracking)) {}
+LoopThread::LoopThread(const Config& config, AnswerTime time)
+    : LoopExchange(config.loop.answer_lag_frames, time, std::make_unique<ThreadResponder>(config)) {
+}
 
 }  // namespace pf

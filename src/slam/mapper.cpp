@@ -41,6 +41,10 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
     text = "the camera (" + describe(input.camera) + ") is not that of the map (" +
            describe(camera) + ")";
   }
+  if (text.empty() && calibration) {
+    const std::string wrong = misfit(*calibration, input.camera);
+    if (!wrong.empty()) text = "the calibration of depth " + wrong;
+  }
   if (text.empty() && input.stamp_ns <= last_stamp_ns) {
     text = "its stamp is not later than that of the frame before";
   }
@@ -108,7 +112,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
   showFrom(location.pose(), true);
-  view.stamp_ns = last_stamp_ns;
+  seen.stamp_ns = view.stamp_ns = last_stamp_ns;
 }
 
 /// Where a frame was believed that is not to be fused. `fill`: it stands for the map where there is
@@ -116,27 +120,30 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
 void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();
   showFrom(location.pose(), fill);
-  view.stamp_ns = last_stamp_ns;
+  seen.stamp_ns = view.stamp_ns = last_stamp_ns;
 }
 
 /// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
 void Mapper::State::showFrom(const MapPose& pose, bool fill) {
   renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), view);
   model.assign(view, fill ? &frame.levels[0] : nullptr);
+  seen = view;
+  if (calibration) seen.depth_m = distorter.inMetres(view.depth_m, 1.0);
 }
 
 Mapper::Mapper(const Config& config) : state_(std::make_unique<State>(config)) {}
 Mapper::~Mapper() = default;
 
-FrameStatus Mapper::process(const StaticFrame& input) {
+FrameStatus Mapper::process(const StaticFrame& measured) {
   State& s = *state_;
-  if (defectOf(input.frame).empty()) {
-    s.sees_other_camera = !s.view.empty() && !isSameCamera(s.camera, input.frame.camera);
+  if (defectOf(measured.frame).empty()) {
+    s.sees_other_camera = !s.view.empty() && !isSameCamera(s.camera, measured.frame.camera);
   }
-  FrameStatus status = skip(input.frame.stamp_ns, FrameOutcome::bad_input);
-  status.detail = s.defect(input);
+  FrameStatus status = skip(measured.frame.stamp_ns, FrameOutcome::bad_input);
+  status.detail = s.defect(measured);
   status.is_other_camera = s.sees_other_camera;
   if (!status.detail.empty()) return status;
+  const StaticFrame input = s.corrected(measured);
   if (s.view.empty()) s.camera = input.frame.camera;
   const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
@@ -204,7 +211,7 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
 }
 
 const ModelView& Mapper::view() const {
-  return state_->state() == TrackingState::lost ? state_->nothing : state_->view;
+  return state_->state() == TrackingState::lost ? state_->nothing : state_->seen;
 }
 
 ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T_map_camera) const {
@@ -237,7 +244,9 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   State& s = *state_;
   s.map.clear();
   s.T_world_map.reset();
-  s.view = ModelView();
+  s.view = s.seen = ModelView();
+  s.constraints_are_old = s.calibration_is_asked = false;
+  s.last_calibration.clear();
   s.localiser.reset();
   s.sees_other_camera = false;
   s.T_map_start = T_map_camera;

@@ -86,6 +86,11 @@ void Mapper::State::tellCloser() {
     keyframes_moved = true;
   }
   if (std::exchange(keyframes_moved, false)) question->corrected = back_end.keyframePoses();
+  question->depth_version = depth_version;
+  question->calibrates = std::exchange(calibration_is_asked, false);
+  if (std::exchange(constraints_are_old, false)) {
+    question->remeasured = back_end.graph().constraints();
+  }
 }
 
 /// Lost: asks where this frame is, unless the answer for one before is still to come.
@@ -110,10 +115,16 @@ void Mapper::State::askForPlace() {
 
 void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
   const std::vector<MapPose> before = back_end.keyframePoses();
+  follow(back_end.close(loops), before);
+}
+
+/// `before`: the poses of the keyframes before these corrections.
+void Mapper::State::follow(const std::vector<Deformation>& deformations,
+                           const std::vector<MapPose>& before) {
   int where = fragment();
   Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
   bool moves = false, joins = false;
-  for (const Deformation& deformation : back_end.close(loops)) {
+  for (const Deformation& deformation : deformations) {
     if (deformation.isIdentity()) continue;
     moves = true;
     joins |= deformation.joins();
@@ -136,7 +147,10 @@ void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
 }
 
 std::optional<LoopQuestion> Mapper::takeQuestion() {
-  return std::exchange(state_->question, std::nullopt);
+  State& s = *state_;
+  const bool waits = s.constraints_are_old || s.calibration_is_asked;
+  if (!s.question && waits && s.config.loop.enabled) s.tellCloser();
+  return std::exchange(s.question, std::nullopt);
 }
 
 void Mapper::take(const LoopAnswer& answer) {
@@ -149,6 +163,7 @@ void Mapper::take(const LoopAnswer& answer) {
     }
   }
   if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
+  s.take(answer);
 }
 
 void Mapper::introduceCloser() {
@@ -174,8 +189,18 @@ void Mapper::load(SavedMap saved, MapUse use) {
     view.camera = s.frame.camera;
     s.views.push_back(std::move(view));
   }
+  if (saved.calibration && !s.config.calibration.corrects()) {
+    throw InputError(
+        "its depth was corrected by a calibration, and calibration.mode is none: "
+        "expected learn or frozen");
+  }
   s.may_change = use == MapUse::extend;
   s.closer_is_old = true;
+  if (saved.calibration) {
+    s.use(std::move(saved.calibration));
+  } else if (s.calibration) {  // the map is of depth as it was measured
+    s.correctDepthBy(s.calibration->field);
+  }
   const std::vector<MapPose> poses = s.back_end.keyframePoses();
   for (const MapPose& pose : poses) s.last_fragment = std::max(s.last_fragment, pose.fragment);
   s.seek(poses.back(), saved.brightness);
@@ -212,6 +237,7 @@ SavedMap Mapper::saved(const PinholeCamera& camera) const {
   saved.graph_version = graph.version();
   saved.frames = s.back_end.frames();
   saved.views = s.views;
+  saved.calibration = s.calibration;
   return saved;
 }
 

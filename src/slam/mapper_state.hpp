@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -56,6 +57,16 @@ struct Mapper::State {
   bool may_change = true;           ///< the map
   std::vector<MapPose> rooms;       ///< of a loaded map until it is found: where to look
   std::size_t next_room = 0;
+  // Of the depth camera.
+  std::optional<DepthCalibration> calibration;  ///< nothing: depth is taken as measured
+  DepthCorrector corrector{DepthField()};       ///< by it
+  int depth_version = 0;                        ///< how often it was learned anew
+  bool constraints_are_old = false;             ///< measured with depth as it was before
+  bool calibration_is_asked = false;
+  std::string last_calibration;
+  DepthCorrector distorter{DepthField()};  ///< the other way round
+  ModelView seen;                          ///< `view` with the camera's own error
+
   // Of the search for a lost camera.
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
@@ -92,6 +103,12 @@ struct Mapper::State {
   void askForFragment();
   void placeFragment(const PlaceVerdict& seen);
   void correct(const std::vector<LoopConstraint>& loops);
+  void follow(const std::vector<Deformation>& deformations, const std::vector<MapPose>& before);
+  StaticFrame corrected(const StaticFrame& input);
+  void use(std::optional<DepthCalibration> known);
+  void take(const LoopAnswer& answer);
+  void improve(const DepthCalibration& step);
+  void correctDepthBy(const DepthField& step);
 };
 
 }  // namespace pf

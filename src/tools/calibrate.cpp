@@ -16,7 +16,7 @@ namespace pf {
 namespace {
 
 struct Options {
-  std::string map, output, name, start, picture, truth;
+  std::string map, output, name, picture, truth;
 };
 
 /// Error of depth (mm) that an error of 1/z makes at z metres.
@@ -50,7 +50,7 @@ int calibrate(const Options& options) {
   printEstimate(estimate);
   // A map whose depth was corrected already tells what that correction left.
   DepthField field = estimate.field;
-  if (!options.start.empty()) field = loadCalibration(options.start).field.then(field).centred();
+  if (recorded.corrected_by) field = recorded.corrected_by->field.then(field).centred();
   std::optional<DepthField> truth;
   if (!options.truth.empty()) truth = loadCalibration(options.truth + "/depth_field.yaml").field;
   if (truth) printTruth(field, *truth);
@@ -73,9 +73,6 @@ int main(int argc, char** argv) {
   app.add_option("map", options.map, "map file (*.pfdb), its loops closed")->required();
   app.add_option("-o,--output", options.output, "calibration file to write")->required();
   app.add_option("--name", options.name, "of the camera: serial number, or what you call it");
-  app.add_option("--start", options.start,
-                 "calibration that the depth of the map was corrected by: what is written is both "
-                 "together");
   app.add_option("--picture", options.picture, "PNG of the field");
   app.add_option("--truth", options.truth,
                  "folder of the simulated recording: how far from the true field");

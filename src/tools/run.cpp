@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/io/calibrated_source.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run.hpp"
 #include "posefusion/run/run_report.hpp"
@@ -89,11 +88,16 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   };
   std::exception_ptr failure;
   bool full = false;
+  int depth_version = pipeline.mapper().depthVersion();
   try {
     runPipeline(source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
       report.add(frame);
       say(results.add(frame));
       say(remarkOn(frame, defect));
+      const Mapper& mapper = pipeline.mapper();
+      if (std::exchange(depth_version, mapper.depthVersion()) != mapper.depthVersion()) {
+        say("learned: " + mapper.lastCalibration());
+      }
       if (frame.status.map_full && !std::exchange(full, true)) {
         say("the map is full (map.memory_limit_mb): tracking goes on, without new surfels");
       }
@@ -126,12 +130,12 @@ int run(const RunOptions& options) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
     cv::setNumThreads(options.threads);
   }
-  const auto source =
-      calibrated(posefusion_ros::openInput(options.input, options.reading), options.calibration);
+  const auto source = posefusion_ros::openInput(options.input, options.reading);
   RunReport report(options.config);
   report.setTruth(truthFor(options, *source));
   Pipeline pipeline(options.config, detectorFor(options, *source));
   requireOtherFolder(options);
+  if (!options.calibration.empty()) useCalibration(options, pipeline);
   if (!options.map_file.empty()) loadMap(options, pipeline);
   stopOnSignals();
   RunResults results(options, pipeline);

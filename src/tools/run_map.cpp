@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/calibration_file.hpp"
 
 namespace pf {
 namespace {
@@ -22,6 +23,15 @@ void loadMap(const RunOptions& options, Pipeline& pipeline) {
   } catch (const InputError& error) {
     throw InputError(options.map_file + ": " + error.what());
   }
+}
+
+void useCalibration(const RunOptions& options, Pipeline& pipeline) {
+  const DepthCalibration calibration = loadCalibration(options.calibration);
+  const auto source = posefusion_ros::openInput(options.input, options.reading);
+  const auto camera = firstCamera(*source);
+  const std::string wrong = camera ? misfit(calibration, *camera) : "";
+  if (!wrong.empty()) throw InputError(options.calibration + ": " + wrong);
+  pipeline.calibrate(calibration);
 }
 
 RunMap::RunMap(const RunOptions& options, const std::string& folder, const Mapper& mapper)

@@ -14,6 +14,10 @@ namespace pf {
 /// another camera than the input.
 void loadMap(const RunOptions& options, Pipeline& pipeline);
 
+/// Corrects depth by the calibration file of the options. Throws InputError naming it when it
+/// cannot be used, or is of another camera than the input.
+void useCalibration(const RunOptions& options, Pipeline& pipeline);
+
 /// The map file that a run writes: `map.pfdb` in its folder (while it lasts, `map.partial.pfdb`),
 /// or the one it continues; none where it only localises.
 class RunMap {

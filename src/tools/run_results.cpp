@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/map_file.hpp"
 
 namespace pf {
@@ -59,6 +60,9 @@ void RunResults::finish(RunReport& report) {
       attempt([&] { report.writeTrajectories(folder_.path(), mapper.worldFromMap()); });
   if (has_poses) journal_.remove();
   attempt([&] { observers_.finish(report); });
+  if (mapper.calibration()) {
+    attempt([&] { saveCalibration(folder_.file("calibration.yaml"), *mapper.calibration()); });
+  }
   attempt([&] { report.writeSummary(folder_.path(), savedSurfels(mapper.map())); });
   attempt([&] { map_.finish(); });
   attempt([&] { saveMap(folder_.file("map.ply"), mapper.map(), mapper.worldFromMap()); });

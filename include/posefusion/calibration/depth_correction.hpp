@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "posefusion/calibration/depth_field.hpp"
-#include "posefusion/core/frame.hpp"
 
 namespace pf {
 
@@ -23,20 +22,31 @@ class DepthCorrection {
   /// Throws std::invalid_argument for another size or type.
   void apply(const cv::Mat& depth, double unit_m, cv::Mat& out) const;
 
+  /// The same with `out` in metres, CV_32FC1, whatever the type of `depth`: nothing is rounded.
+  void applyInMetres(const cv::Mat& depth, double unit_m, cv::Mat& out) const;
+
  private:
+  void require(const cv::Mat& depth) const;
+  const float* row(int v) const { return &table_[static_cast<std::size_t>(v * size_.width)]; }
+
   cv::Size size_;
   std::vector<float> table_;  ///< d, 1/m
 };
 
-/// Corrects the depth of frames, whatever their size; their pixels are not written to. Not thread
-/// safe.
-class FrameCorrector {
+/// Corrects depth images, whatever their size; their pixels are not written to. Not thread safe.
+class DepthCorrector {
  public:
-  explicit FrameCorrector(const DepthField& field) : field_(field) {}
+  explicit DepthCorrector(const DepthField& field) : field_(field) {}
 
-  RgbdFrame correct(const RgbdFrame& frame);
+  /// In metres, CV_32FC1, in memory of its own; empty and other types than DepthCorrection takes
+  /// come back as they are.
+  cv::Mat inMetres(const cv::Mat& depth, double unit_m);
+  /// In units and type of `depth`.
+  cv::Mat likeInput(const cv::Mat& depth, double unit_m);
 
  private:
+  const DepthCorrection* tableFor(const cv::Mat& depth);
+
   DepthField field_;
   DepthCorrection table_;
 };

@@ -47,7 +47,10 @@ class DepthField {
   /// z_true (m) of a measured depth; 0 where there is none.
   double corrected(double z_m, double x, double y) const;
 
-  double mean() const;         ///< of the nodes, 1/m
+  /// How much each node counts in the mean over the image; they sum up to 1.
+  std::vector<double> shares() const;
+
+  double mean() const;         ///< over the image, 1/m
   double rms() const;          ///< over the image, 1/m
   DepthField centred() const;  ///< less its mean: the gauge, as the mean cannot be observed
 

@@ -17,8 +17,10 @@ struct FieldEstimateConfig {
   int columns = DepthField::kColumns, rows = DepthField::kRows;
   double node_sigma_per_m = 0.005;    ///< what an uncalibrated camera has (1/m)
   double smooth_sigma_per_m = 0.001;  ///< by which neighbouring nodes differ (1/m)
-  int steps = 8;                      ///< Gauss-Newton
-  std::size_t keep_out_every = 5;     ///< one pair in so many judges, and is not learned from
+  int most_steps = 12;                ///< Gauss-Newton, until a step is a part of what is known
+  /// That are compared, of all views: the fewer the pairs, the more patches of each.
+  std::size_t most_patches = 600000;
+  std::size_t keep_out_every = 5;  ///< one pair in so many judges, and is not learned from
   PairModel model;
   PairLimits pairs;
 };
@@ -50,6 +52,10 @@ struct FieldEstimate {
 /// too little the field is zero, and the reason says what is missing. Throws InputError for a view
 /// whose image and camera do not fit together.
 FieldEstimate estimateField(const std::vector<CalibrationView>& views,
+                            const FieldEstimateConfig& config = {});
+
+/// The same of surfaces that were found before, by rising id.
+FieldEstimate estimateField(const std::vector<ViewSurface>& surfaces,
                             const FieldEstimateConfig& config = {});
 
 }  // namespace pf

@@ -14,12 +14,14 @@ struct PairModel {
   /// Standard deviation (1/m) of what is wrong with inverse depth besides the noise of the sensor:
   /// as yet unknown field, finer structure than the grid, normals.
   double rest_per_m = 0.005;
-  /// How many patches share that error, as they lie in one cell of the grid.
-  double patches_of_cell = 19;
+  std::size_t patches = 1000;  ///< of each view are compared, spread over it
   /// Standard deviation of the pose of a pair: loops and tracking leave it (m, rad).
   double pose_sigma_m = 0.03, pose_sigma_rad = 0.015;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
   double robust_scale = 2.0;
+
+  /// How many patches share what is wrong, as they lie in one cell of the grid.
+  double patchesOfCell() const;
 };
 
 /// A residual as it is judged.
@@ -35,7 +37,7 @@ struct Judged {
 
 /// All residuals of a pair, of the patches of both views, at a pose that is `x` (twist) off.
 std::vector<Judged> residualsOf(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                                const DepthField& field, const Vector6d& x);
+                                const DepthField& field, const Vector6d& x, const PairModel& model);
 
 /// Normal equations of a Gauss-Newton step of the field, summed over pairs.
 struct FieldEquations {

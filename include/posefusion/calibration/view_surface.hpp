@@ -40,6 +40,11 @@ class ViewSurface {
   int fragment() const { return fragment_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }  ///< those there are
 
+  void setPose(const MapPose& pose) {
+    T_map_camera_ = pose.T_map_camera;
+    fragment_ = pose.fragment;
+  }
+
   /// The patch nearest to a pixel; null where there is none.
   const SurfacePatch* near(double u, double v) const;
 

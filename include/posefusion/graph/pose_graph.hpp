@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,14 @@ class PoseGraph {
   /// loop: nothing changes then. Throws like addLoop(), and when both are of one fragment.
   GraphResult joinFragment(const PoseConstraint& loop);
 
+  /// Constraints that hold, measured anew (same keyframes, same kind): they replace the old ones,
+  /// and all is optimised. Nothing changes where one of all would then be missed by more than
+  /// max_chi_square. What does not hold, or is no more, is left out.
+  GraphResult remeasure(const std::vector<PoseConstraint>& constraints);
+
+  /// Counts a correction that moves no keyframe.
+  void countCorrection() { ++version_; }
+
   Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }
 
   /// All that must be kept to go on later.
@@ -83,6 +92,9 @@ class PoseGraph {
   PoseConstraint checkedLoop(const PoseConstraint& loop) const;
   Attempt attempt(const std::vector<Keyframe>& from,
                   const std::vector<PoseConstraint>& loops) const;
+  Attempt attemptAll() const;
+  Attempt solve(const std::vector<Keyframe>& from, const std::vector<PoseConstraint>& all,
+                const std::vector<std::size_t>& first, const std::set<std::size_t>& parts) const;
   /// What stands against accepting these errors, the last of them of new loops; empty: nothing.
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);

@@ -1,33 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <string>
 
-#include "posefusion/calibration/depth_field.hpp"
-#include "posefusion/core/camera.hpp"
+#include "posefusion/calibration/depth_calibration.hpp"
 
 namespace pf {
 
-/// The systematic error of one camera, as it is kept in a file.
-struct DepthCalibration {
-  std::string name;      ///< of the camera: its serial number, or what its owner calls it
-  PinholeCamera camera;  ///< of the images without lens distortion that the field spans
-  DepthField field;
-  std::size_t keyframes = 0, pairs = 0;  ///< that it was learned from
-  double before_mm = 0, after_mm = 0;    ///< median residual of pairs that were kept out
-};
+/// A calibration as YAML; the same calibration gives the same bytes.
+std::string calibrationText(const DepthCalibration& calibration);
 
-/// Reads what saveCalibration() writes. Throws InputError naming the file, the key, its value and
-/// what was expected.
+/// Reads what calibrationText() writes; `origin` (a file) goes into messages. Throws InputError
+/// naming it, the key, its value and what was expected.
+DepthCalibration parseCalibration(const std::string& text, const std::string& origin);
+
+/// Reads a file of saveCalibration(). Throws InputError as parseCalibration() does.
 DepthCalibration loadCalibration(const std::string& path);
 
-/// Writes YAML, whole or not at all; the same calibration gives the same bytes. Throws InputError
-/// naming the file.
+/// Writes calibrationText(), whole or not at all. Throws InputError naming the file.
 void saveCalibration(const std::string& path, const DepthCalibration& calibration);
-
-/// Why a calibration does not hold for images of this camera: a ray would meet the field more than
-/// half a cell from where it belongs. Empty when it holds; sizes may differ.
-std::string misfit(const DepthCalibration& calibration, const PinholeCamera& camera);
 
 }  // namespace pf

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/calibration/view_surface.hpp"
 
 namespace pf {
@@ -12,6 +14,7 @@ namespace pf {
 struct CalibrationViews {
   PinholeCamera camera;  ///< of the frames
   std::vector<CalibrationView> views;
+  std::optional<DepthCalibration> corrected_by;  ///< their depth, already
 };
 
 /// The keyframes of a map file that have images; people are out of their depth. Throws InputError

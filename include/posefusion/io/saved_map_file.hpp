@@ -20,12 +20,18 @@ SavedMap readSavedMap(const std::string& path);
 /// what the file says cannot be.
 std::optional<Eigen::Isometry3d> placeOf(const MapContent& content);
 
+/// That the depth of a map was corrected by. Throws InputError where what the file says cannot be.
+std::optional<DepthCalibration> calibrationOf(const MapContent& content);
+
+/// The rectified camera of the first good frame of a recording, which is read for it.
+std::optional<PinholeCamera> firstCamera(FrameSource& frames);
+
 /// Why frames of this (rectified) camera do not fit the map of a file; empty when they do. `whose`:
 /// words for where the frames are from.
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map,
                          const PinholeCamera& of_frames, const std::string& whose);
 
-/// The same of the first good frame of a recording, which is read for it.
+/// The same of the first good frame of a recording.
 std::string cameraDefect(const std::string& file, const PinholeCamera& of_map, FrameSource& frames,
                          const std::string& whose);
 
@@ -52,6 +58,7 @@ class MapRecording {
     int frame = -1;  ///< blocks changed before it; -1: none
     std::size_t frames = 0;
     int keyframes = 0;
+    int depth_version = 0;
   };
 
   static Written amountOf(const Mapper& mapper);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "posefusion/graph/constraint.hpp"
 #include "posefusion/loop/config.hpp"
 #include "posefusion/loop/features.hpp"
 #include "posefusion/loop/ferns.hpp"
@@ -59,6 +60,10 @@ class LoopCloser {
   /// more than are enough. The nearest come first: depth that is off by a few percent spoils a
   /// constraint by as much of the way between the two.
   std::vector<LoopConstraint> findLoops();
+
+  /// Constraints between known keyframes, measured anew from where they are: those whose pictures
+  /// still agree.
+  std::vector<PoseConstraint> remeasure(const std::vector<PoseConstraint>& constraints);
 
   /// Of the keyframes, in the map as last told.
   std::vector<MapPose> poses() const;

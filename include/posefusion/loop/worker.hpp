@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/config.hpp"
+#include "posefusion/calibration/depth_calibration.hpp"
+#include "posefusion/calibration/field_learner.hpp"
+#include "posefusion/graph/constraint.hpp"
 #include "posefusion/loop/closer.hpp"
 #include "posefusion/loop/map_points.hpp"
 
@@ -32,6 +36,11 @@ struct LoopQuestion {
   /// empty.
   std::vector<MapPose> corrected;
   std::shared_ptr<const PlaceQuestion> place;
+  /// How often the depth of the keyframes has been corrected by what was learned.
+  int depth_version = 0;
+  /// Constraints between known keyframes that are to be measured anew, as their depth has changed.
+  std::vector<PoseConstraint> remeasured{};
+  bool calibrates = false;  ///< asked for: the camera's field is estimated now
 };
 
 /// What was found.
@@ -42,15 +51,22 @@ struct LoopAnswer {
   bool asked_for_place = false;
   std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
   LoopCounts counts;                  ///< since the beginning
+  /// What the depth camera is off by, as it is now: worth correcting, where it is there.
+  std::optional<DepthCalibration> calibration;
+  int depth_version = 0;          ///< of the question
+  std::string calibration_doubt;  ///< why an estimate is not worth it; empty: there is none
+  std::vector<PoseConstraint> remeasured;  ///< those that the pictures still agree on
 };
 
-/// The loop closer's work, question by question: loops of keyframes, and a lost camera's place by
+/// The loop closer's work, question by question: loops of keyframes, what the depth camera is off
+/// by, and a lost camera's place by
 /// drawing the map around the last pose before the loss (searchPlaces) and verifying the best
 /// candidates. The answers depend on the questions and their order alone. Not thread safe; may work
 /// beside the mapper.
 class LoopWorker {
  public:
-  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking);
+  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking,
+             const CalibrationConfig& calibration = {});
 
   LoopAnswer answer(const LoopQuestion& question);
 
@@ -61,6 +77,10 @@ class LoopWorker {
     Eigen::Vector3d up = Eigen::Vector3d::Zero();
   };
 
+  /// The keyframes, from the first on.
+  void begin();
+  void addKeyframe(const KeyframeView& view);
+  void learn(const LoopQuestion& question, LoopAnswer& answer);
   std::optional<PlaceVerdict> findPlace(const PlaceQuestion& question);
   /// Candidates around all poses of the question, best first, and how many (`most`) are worth
   /// verifying.
@@ -70,7 +90,9 @@ class LoopWorker {
 
   LoopConfig config_;
   TrackingConfig tracking_;
+  CalibrationConfig calibration_;
   LoopCloser closer_;
+  FieldLearner learner_;
   PlaceVerifier verifier_;
   LoopCounts counts_;
   // Of the map that was last searched in.

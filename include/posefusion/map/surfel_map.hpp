@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -13,8 +14,6 @@
 #include "posefusion/map/surfels.hpp"
 
 namespace pf {
-
-class Deformation;
 
 /// The surfels that were made in one cube of a fragment. Fusion may move them a little beyond its
 /// faces.
@@ -30,7 +29,7 @@ struct SurfelBlock {
 /// The surfels, in blocks, and the frame clock. A frame touches only the blocks in view, so that
 /// its cost does not grow with the map. Fragments share the clock and the memory, no block: what
 /// works at a place works in one of them. Has one owner (the mapper); changed by Fuser, add(),
-/// removeIf() and deform(). The order of blocks and of surfels in them depends neither on threads
+/// removeIf() and move(). The order of blocks and of surfels in them depends neither on threads
 /// nor on hashing.
 class SurfelMap {
  public:
@@ -114,6 +113,14 @@ class SurfelMap {
     countMemory();
   }
 
+  /// What moves the surfels of a block: marks those that it moved.
+  using Mover = std::function<void(SurfelBlock& block, std::vector<char>& moved)>;
+
+  /// Moves surfels, block by block in parallel, then takes those that left the cube of their block,
+  /// or whose fragment becomes another, into the blocks where they are now; as in add(), what no
+  /// memory is left for is refused and counted. Blocks of which nothing moved keep all their bits.
+  void move(const Mover& mover, const std::function<int(int)>& fragment_after);
+
   /// Memory (bytes) that the blocks hold, used or reserved; never above memory_limit_mb.
   std::size_t memory() const { return memory_; }
 
@@ -131,7 +138,6 @@ class SurfelMap {
 
  private:
   friend class Fuser;
-  friend void deform(SurfelMap& map, const Deformation& deformation);
 
   static constexpr float kMostOutweighed = 24;  // frames
 

@@ -55,6 +55,12 @@ class BackEnd {
   /// the map is to follow, in that order.
   std::vector<Deformation> close(const std::vector<LoopConstraint>& loops);
 
+  /// Constraints measured anew; see PoseGraph::remeasure(). Returns what the map is to follow.
+  Deformation remeasure(const std::vector<PoseConstraint>& constraints);
+
+  /// A correction that moves no keyframe.
+  void countCorrection() { graph_.countCorrection(); }
+
   /// The poses of the frames recorded here (not of loaded ones) as they are known now, without
   /// those of fragments whose place is not known.
   Trajectory trajectory() const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posefusion/blur/config.hpp"
+#include "posefusion/calibration/config.hpp"
 #include "posefusion/config/fields.hpp"
 #include "posefusion/frame/config.hpp"
 #include "posefusion/graph/config.hpp"
@@ -32,6 +33,7 @@ struct Config {
   MapConfig map;
   LoopConfig loop;
   GraphConfig graph;
+  CalibrationConfig calibration;
 };
 
 /// Lists all fields in order, grouped by stage.

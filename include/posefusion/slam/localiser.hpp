@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/slam/status.hpp"
 #include "posefusion/slam/verdict.hpp"
@@ -88,6 +89,9 @@ class Localiser {
   /// Follows a correction of the map, which moves lastPose() by `T_new_old` and into `fragment`. A
   /// place suggested in another fragment than that is given up.
   void move(const Eigen::Isometry3d& T_new_old, int fragment);
+
+  /// Depth is corrected by one more field from the next frame on.
+  void correctDepth(const DepthField& step);
 
   /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Believed once some
   /// frames in a row agree.

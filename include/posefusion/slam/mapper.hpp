@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/core/frame.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
@@ -52,6 +53,25 @@ class Mapper {
   /// back, once the next frames agree.
   void take(const LoopAnswer& answer);
 
+  /// From the next frame on depth is corrected by this, until mapping knows better; what
+  /// reset() begins keeps it. To be called before the first frame; before load(), which takes the
+  /// map's own where it has one, and else corrects the map. Throws InputError where
+  /// `calibration.mode` is none.
+  void calibrate(const DepthCalibration& calibration);
+
+  /// What depth is corrected by now, and how often that was learned anew since the map began.
+  /// Nothing: it is taken as measured. @{
+  const std::optional<DepthCalibration>& calibration() const;
+  int depthVersion() const;
+  /// @}
+
+  /// The loop closer is to estimate the camera's error now, with the keyframes there are. Returns
+  /// why it cannot, or nothing. See lastCalibration().
+  std::string askForCalibration();
+
+  /// What became of the last estimate; empty: there was none.
+  const std::string& lastCalibration() const;
+
   /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
   /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
   void load(SavedMap map, MapUse use);
@@ -79,7 +99,8 @@ class Mapper {
   /// is.
   FrameStatus skip(std::int64_t stamp_ns, FrameOutcome outcome) const;
 
-  /// The map as seen from the last trusted pose, for the segmenter; empty before the first frame
+  /// The map as the depth camera sees it from the last trusted pose, with the camera's own error,
+  /// so that depth as measured compares with it: for the segmenter. Empty before the first frame
   /// and while the camera is lost. The images are valid until the next call of process() or
   /// reset(): clone what must live longer.
   const ModelView& view() const;

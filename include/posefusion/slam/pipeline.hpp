@@ -54,6 +54,9 @@ class Pipeline {
   /// Before the first frame: goes on in a saved map; see Mapper::load().
   void load(SavedMap map, MapUse use) { mapper_.load(std::move(map), use); }
 
+  /// Before load() and the first frame; see Mapper::calibrate().
+  void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
+
   /// Takes in what the loop closer still has to say, after the last frame.
   void finish() { loop_thread_.finish(mapper_); }
 

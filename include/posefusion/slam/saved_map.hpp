@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/core/camera.hpp"
 #include "posefusion/graph/constraint.hpp"
 #include "posefusion/graph/keyframe.hpp"
@@ -27,6 +28,8 @@ struct SavedMap {
   std::vector<FrameRecord> frames;  ///< trajectory
   /// What keyframes saw, as far as it is known; their poses and cameras need not be set.
   std::vector<KeyframeView> views;
+  /// That the depth of keyframes and surfels was corrected by; nothing: it is as measured.
+  std::optional<DepthCalibration> calibration{};
 };
 
 /// What may become of a loaded map.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "posefusion/calibration/depth_field.hpp"
+#include "posefusion/core/camera.hpp"
+#include "posefusion/graph/keyframe.hpp"
+#include "posefusion/map/surfel_map.hpp"
+
+namespace pf {
+
+/// What is newly known of the depth camera, as it moves what its depth has made: all hangs on the
+/// keyframe before it and is moved along the rays of that camera. Surfels are means of many frames,
+/// so that this is right as far as the field hardly differs between where the keyframe and the
+/// others saw a surface.
+struct DepthStep {
+  DepthField field;  ///< added to what depth was corrected by (1/m)
+  PinholeCamera camera;
+  std::vector<Keyframe> keyframes;
+};
+
+/// Moves each surfel, position, normal and radius, by the keyframe of its fragment that was taken
+/// last when it was made (the first, for what is older). Behind a camera, or without a keyframe, it
+/// stays. The result does not depend on the number of threads.
+void correctDepth(SurfelMap& map, const DepthStep& step);
+
+}  // namespace pf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/calibration/field_learner.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::size_t kFewest = 10;  // keyframes: fewer never make enough pairs
+// Surfaces of that many keyframes are 20 MB, and their pairs a second of work.
+constexpr std::size_t kMostViews = 160;
+constexpr std::size_t kMostPatches = 200000;
+
+}  // namespace
+
+void FieldLearner::add(const CalibrationView& view) {
+  surfaces_.emplace_back(view);
+  ++keyframes_;
+  if (surfaces_.size() <= kMostViews) return;
+  std::vector<ViewSurface> every_second;
+  for (std::size_t i = 0; i < surfaces_.size(); i += 2) {
+    every_second.push_back(std::move(surfaces_[i]));
+  }
+  surfaces_ = std::move(every_second);
+}
+
+void FieldLearner::setPoses(const std::vector<MapPose>& poses) {
+  for (ViewSurface& surface : surfaces_) {
+    surface.setPose(poses.at(static_cast<std::size_t>(surface.id())));
+  }
+}
+
+std::optional<FieldEstimate> FieldLearner::learn() {
+  if (keyframes_ < kFewest || 4 * keyframes_ < 5 * estimated_at_) return std::nullopt;
+  return estimate();
+}
+
+FieldEstimate FieldLearner::estimate() {
+  estimated_at_ = keyframes_;
+  FieldEstimateConfig config;
+  config.most_patches = kMostPatches;
+  return estimateField(surfaces_, config);
+}
+
+}  // namespace pf
