@@ -25,7 +25,8 @@ class TumOutput : public Output {
     const Scenario& scenario = simulation.scenario();
     saveCalibration(folder_ / "depth_field.yaml",
                     {"specimen " + std::to_string(scenario.depth.specimen), scenario.camera,
-                     trueField(scenario.depth, scenario.camera)});
+                     trueField(scenario.depth, scenario.camera,
+                               scenario.start_s + 0.5 * scenario.duration_s)});
     saveScenePoints(folder_ / "scene_points.ply", simulation.world(), 0.03);
   }
 
