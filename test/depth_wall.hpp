@@ -12,9 +12,12 @@ inline PinholeCamera xtion() { return {640, 480, 525, 525, 319.5, 239.5, {}}; }
 /// What a camera before a wall sees that fills the picture.
 inline DepthView wall(float z_m, float cosine = 1.0F) {
   const cv::Size size(640, 480);
-  return {cv::Mat(size, CV_32FC1, cv::Scalar(z_m)), cv::Mat::zeros(size, CV_8UC1),
-          cv::Mat(size, CV_32FC1, cv::Scalar(cosine)), cv::Mat(size, CV_32FC1, cv::Scalar(0.7)),
-          cv::Mat::zeros(size, CV_32FC1)};
+  return {cv::Mat(size, CV_32FC1, cv::Scalar(z_m)),
+          cv::Mat::zeros(size, CV_8UC1),
+          cv::Mat(size, CV_32FC1, cv::Scalar(cosine)),
+          cv::Mat(size, CV_32FC1, cv::Scalar(0.7)),
+          cv::Mat::zeros(size, CV_32FC1),
+          cv::Mat()};
 }
 
 inline cv::Mat sense(const DepthView& view, const DepthConfig& config, std::uint32_t key = 1U,

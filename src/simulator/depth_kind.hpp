@@ -31,6 +31,10 @@ class DepthKind {
 
 /// A projected pattern seen from beside (Xtion, Kinect); without `config.noise` the exact depth.
 std::unique_ptr<DepthKind> makeStructuredLight(const DepthShot& shot);
+/// The phase of modulated light (Kinect for Xbox One, Azure Kinect).
+std::unique_ptr<DepthKind> makeTimeOfFlight(const DepthShot& shot);
+/// Two infrared cameras and a pattern that gives texture (RealSense D400).
+std::unique_ptr<DepthKind> makeActiveStereo(const DepthShot& shot);
 
 /// Marks (1) what the second eye, the baseline to the right, does not see: a projector or another
 /// camera. In its picture near things lie further left: going left, whatever lies right of what was

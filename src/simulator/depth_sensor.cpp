@@ -6,10 +6,20 @@
 #include "posefusion/core/parallel.hpp"
 
 namespace pf::simulator {
+namespace {
+
+std::unique_ptr<DepthKind> makeKind(const DepthShot& shot) {
+  if (shot.config.noise && shot.config.kind == "time_of_flight") return makeTimeOfFlight(shot);
+  if (shot.config.noise && shot.config.kind == "active_stereo") return makeActiveStereo(shot);
+  return makeStructuredLight(shot);
+}
+
+}  // namespace
+
 void senseDepth(const DepthShot& shot, cv::Mat& depth_mm, cv::Mat& mask) {
   depth_mm.create(shot.view.depth_m.size(), CV_16UC1);
   mask.create(shot.view.depth_m.size(), CV_8UC1);
-  const auto kind = makeStructuredLight(shot);
+  const auto kind = makeKind(shot);
   const int width = shot.camera.width, height = shot.camera.height;
   parallelFor(static_cast<std::size_t>(height), 4, [&](std::size_t begin, std::size_t end) {
     std::vector<float> depth_m(static_cast<std::size_t>(width));
