@@ -133,3 +133,11 @@ class Walks(Falls, Maps):
             share = self.evaluate("covariance", sequence, folder.parent / "status.csv")
             name = f"{scenario} {seed}, motion's true error within 3 sigma"
             self.row(name, 100 * share["within_3_sigma"], "%", 90, most=False, digits=1)
+            self.nees_rows(f"{scenario} {seed}", share["nees_5_s"], 85 if scenario == "loop_room" else None)
+
+    def nees_rows(self, name, nees, bar):
+        """Both ways: whether errors of motions over a second are as large as reported."""
+        self.row(f"{name}, NEES of motions over 1 s, means of five within their 95 % band",
+                 100 * nees["inside"], "%", bar, most=False, digits=1)
+        self.fact(f"{name}, the same, below (too cautious), above (too sure); mean, which should be 6", None,
+                  f"{100 * nees['too_low']:.1f}, {100 * nees['too_high']:.1f} %; {nees['mean']:.2f}")

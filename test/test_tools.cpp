@@ -106,6 +106,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
 
   ASSERT_EQ(run({"covariance", sequence(), status, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_EQ(nlohmann::json::parse(said).at("motions"), kFrames - 1);
+  EXPECT_EQ(nlohmann::json::parse(said).at("nees_5_s").at("windows"), 0) << "it is too short";
   EXPECT_EQ(run({"covariance", sequence(), out + "/latest/trajectory.txt"}, "posefusion_evaluate"),
             1);
   EXPECT_TRUE(hasSaid("is no table of posefusion_run --save-status")) << said;
