@@ -191,7 +191,8 @@ std::string RunReport::errorLines() const {
       << "false    " << e->false_count << " poses (off by as much, aligned on the first second)\n";
   if (const auto live = liveErrors()) {
     out << "live     ATE " << fixed(live->ate_m.rmse, 4) << " m, " << live->wrong << " wrong, "
-        << live->false_count << " false, as told at the time: loops have corrected the above\n";
+        << live->false_count
+        << " false, as told at the time; the above is as corrected in the end\n";
   }
   out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
       << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";
