@@ -31,7 +31,7 @@ class Calibration(Runs):
     def camera_rows(self, name, sequence, run, bars):
         """Errors at the end and at the time, and of the surface; `bars` by name, where there are any."""
         final = self.evaluate(sequence, run)
-        live = self.evaluate(sequence, run / "trajectory_live.txt")
+        live = final["live"]
         self.row(f"{name}: ATE, final", final["ate_m"]["rmse"], "m", bars.get("ate"), digits=4)
         self.row(f"{name}: ATE, live", live["ate_m"]["rmse"], "m", bars.get("live"), digits=4)
         self.row(f"{name}: live poses off by more than 0.10 m or 5 degrees", live["false_poses"], "",

@@ -53,7 +53,7 @@ class Maps(Runs):
                 folder, summary = self.run(f"{sequence.name}_{mode}_run", sequence, "--detector", "recorded",
                                            "--mode", mode)
                 name = f"loop_room {seed}, {mode}"
-                self.row(f"{name}, ATE RMSE", summary.get("ate_rmse_m"), "m", digits=3)
+                self.ate_row(f"{name}, ATE RMSE", summary, digits=3)
                 self.loop_counts(name, summary["loops"])
 
     def long(self):
@@ -75,10 +75,10 @@ class Maps(Runs):
         def bar(value):
             return value if barred else None
         track = self.evaluate(sequence, folder, "--plan", folder / "plan.png")
-        self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", bar(0.06), digits=3)
+        self.ate_row(f"{name}, ATE RMSE", summary, bar(0.06), digits=3)
         self.row(f"{name}, frames with a pose, of those not blurred",
                  100 * track["coverage"]["share_of_sharp"], "%", digits=2)
-        self.row(f"{name}, wrong poses", track["wrong_poses"], "", bar(0), digits=0)
+        self.wrong_rows(name, summary, bar(0))
         self.wrong_loops(name, sequence, folder, barred)
         minutes = summary["median_ms_by_minute"]
         growth = minutes[-1] / minutes[1] if len(minutes) > 2 and minutes[1] > 0 else None

@@ -37,7 +37,7 @@ class People(Recordings):
         self.row(f"{name}, all frames with people over 2 %, mean IoU", found["mean_iou"], "", iou,
                  most=False)
         self.row(f"{name}, the same, precision", found["mean_precision"], "", precision, most=False)
-        self.row(f"{name}, ATE RMSE", summary["ate_rmse_m"], "m", 0.020)
+        self.ate_row(f"{name}, ATE RMSE", summary, 0.020)
         in_map = self.evaluate("run", folder, data)["people_in_map"]
         self.row(f"{name}, confident surfels on people", 100 * in_map["part"], "%", 2, digits=2)
         if detector == "embedded":

@@ -15,17 +15,17 @@ class Recordings(Runs):
         for name in ("empty_box", "box_walker"):
             sequence = self.simulated(name, 1)
             folder, summary = self.run(name, sequence, "--detector", "recorded", "--save-masks", *small)
-            self.row(f"{name}, pfh, ATE RMSE", summary["ate_rmse_m"], "m", 0.015)
-            self.wrong_row(name, summary)
+            self.ate_row(f"{name}, pfh, ATE RMSE", summary, 0.015)
+            self.wrong_rows(name, summary)
         _, elastic = self.run("box_walker_elastic", sequence, "--mode", "elastic", *small)
-        self.row("box_walker, elastic, ATE RMSE", elastic["ate_rmse_m"], "m")
+        self.ate_row("box_walker, elastic, ATE RMSE", elastic)
         self.row("box_walker, all frames with people over 2 %, mean IoU",
                  self.evaluate("masks", sequence, folder)["frames_over_2_percent"]["mean_iou"], "")
 
     def kitchen_static(self):
         folder, summary = self.network("static", "kitchen_static", "--check-depth")
-        self.row("kitchen_static, pfh, ATE RMSE", summary["ate_rmse_m"], "m", 0.020)
-        self.wrong_row("kitchen_static", summary)
+        self.ate_row("kitchen_static, pfh, ATE RMSE", summary, 0.020)
+        self.wrong_rows("kitchen_static", summary)
         self.row("kitchen_static, pfh, frames lost", summary["frames"]["lost"], "", 0, digits=0)
         live = summary["depth_median_difference_m"]
         self.row("kitchen_static, depth against the model, median, frames 50-300", 1e3 * live, "mm", 6,
@@ -40,14 +40,13 @@ class Recordings(Runs):
         data = self.options.data / "kitchen_people"
         folder, people = self.network("people", "kitchen_people")
         _, static = self.network("static_240", "kitchen_static", "--max-frames", "240")
-        ate = people["ate_rmse_m"]
-        self.row("kitchen_people, pfh, ATE RMSE", ate, "m", 0.018)
-        self.wrong_row("kitchen_people", people)
+        self.ate_row("kitchen_people, pfh, ATE RMSE", people, 0.018)
+        self.wrong_rows("kitchen_people", people)
         self.row("kitchen_people, pfh, frames lost", people["frames"]["lost"], "", 0, digits=0)
         self.row("kitchen_people, pfh, ATE against the same frames of kitchen_static",
-                 ate / static["ate_rmse_m"], "x", 1.15, digits=2)
+                 people["ate_rmse_m"] / static["ate_rmse_m"], "x", 1.15, digits=2)
         _, elastic = self.run("people_elastic", data, "--mode", "elastic")
-        self.row("kitchen_people, elastic, ATE RMSE", elastic["ate_rmse_m"], "m")
+        self.ate_row("kitchen_people, elastic, ATE RMSE", elastic)
         check = self.evaluate("run", folder, data)["people_in_map"]
         self.row("kitchen_people, confident surfels on people", 100 * check["part"], "%", 2, digits=2)
         self.mask_rows(folder, "", bars=True)

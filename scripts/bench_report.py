@@ -23,12 +23,15 @@ class Report:
     def __init__(self):
         self.rows = []
 
-    def row(self, what, value, unit, bar=None, most=True, digits=4):
+    def row(self, what, value, unit, bar=None, most=True, digits=4, live=None):
         """One figure. `bar`: it must be at most that (or at least, where `most` is false). None: there
-        is none (nothing was located, say), and the bar is missed."""
+        is none (nothing was located, say), and the bar is missed. `live`: the same figure of the poses
+        as they were told at the time, in the same unit; the bar is not for it."""
         kept = None if bar is None else value is not None and (value <= bar if most else value >= bar)
-        self.rows.append((what, "none" if value is None else f"{value:.{digits}f} {unit}".strip(),
-                          "" if bar is None else f"{'<=' if most else '>='} {bar:g}", kept))
+        text = "none" if value is None else f"{value:.{digits}f} {unit}".strip()
+        if live is not None:
+            text += f"; live {live:.{digits}f}"
+        self.rows.append((what, text, "" if bar is None else f"{'<=' if most else '>='} {bar:g}", kept))
         self.print_row(self.rows[-1])
 
     def fact(self, what, kept, text):
@@ -38,7 +41,7 @@ class Report:
     @staticmethod
     def print_row(row):
         mark = {True: "ok", False: "MISSED", None: ""}[row[3]]
-        print(f"{row[0]:<66} {row[1]:>16} {row[2]:>10}  {mark}", flush=True)
+        print(f"{row[0]:<66} {row[1]:>24} {row[2]:>10}  {mark}", flush=True)
 
 
 def write_markdown(path, rows):

@@ -110,5 +110,17 @@ class Runs(Report):
         settings = () if loops else ("--set", "loop.enabled=false")
         return sequence, *self.run(name, sequence, *detector, *settings, "--save-status", status)
 
-    def wrong_row(self, name, summary):
-        self.row(f"{name}, wrong poses", summary["wrong_poses"], "", 0, digits=0)
+    def ate_row(self, what, summary, bar=None, digits=4):
+        """The error of a run's trajectory as loops have corrected it in the end, which `bar` is for, and
+        beside it that of the poses that the robot was told at the time. No figure without truth."""
+        self.row(what, summary.get("ate_rmse_m"), "m", bar, digits=digits,
+                 live=summary.get("live", {}).get("ate_rmse_m"))
+
+    def wrong_rows(self, name, summary, bar=0):
+        """Jumps and slides (a bad motion over a second), and poses that are somewhere else than told
+        (from the start), each in the end and at the time."""
+        live = summary.get("live", {})
+        self.row(f"{name}, wrong poses", summary["wrong_poses"], "", bar, digits=0,
+                 live=live.get("wrong_poses"))
+        self.row(f"{name}, false poses", summary["false_poses"], "", digits=0,
+                 live=live.get("false_poses"))

@@ -94,7 +94,7 @@ class Speed(Runs):
         shutil.rmtree(folder, ignore_errors=True)
         call(PROGRAMS / "posefusion_simulate", "empty_room", "--duration", "5", "--output", folder)
         _, summary = self.run("empty_room", folder, "--detector", "none")
-        self.row("empty_room (simulated), 150 frames, ATE RMSE", summary["ate_rmse_m"], "m")
+        self.ate_row("empty_room (simulated), 150 frames, ATE RMSE", summary)
         _, real = self.run("static_150", self.options.data / "kitchen_static", "--detector", "none",
                            "--max-frames", "150")
         self.row("empty_room against 150 frames of kitchen_static, ATE",

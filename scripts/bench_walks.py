@@ -20,12 +20,11 @@ def states(folder):
 
 
 class Walks(Falls, Maps):
-    def check_track(self, name, sequence, folder):
-        """Coverage, wrong and false poses of a run, by posefusion_evaluate; draws the plan."""
+    def check_track(self, name, sequence, folder, summary):
+        """Wrong and false poses of a run; what posefusion_evaluate tells of it. Draws the plan."""
         plan = folder / "plan.png"
-        track = self.evaluate(sequence, folder, "--plan", plan)
-        self.row(f"{name}, wrong poses", track["wrong_poses"], "", 0, digits=0)
-        return track
+        self.wrong_rows(name, summary)
+        return self.evaluate(sequence, folder, "--plan", plan)
 
     def detectors(self):
         """People as recorded and, where the weights are, as the network finds them."""
@@ -46,18 +45,18 @@ class Walks(Falls, Maps):
     def walk_without_loops(self, seed, people):
         name = f"loop_room {seed}, {people}, no loop closing"
         sequence, folder, summary = self.walk_run("loop_room", seed, people, loops=False)
-        track = self.check_track(name, sequence, folder)
+        track = self.check_track(name, sequence, folder, summary)
         self.row(f"{name}, frames with a pose, of those not blurred",
                  100 * track["coverage"]["share_of_sharp"], "%", 99, most=False, digits=2)
-        self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.20, digits=3)
+        self.ate_row(f"{name}, ATE RMSE", summary, 0.20, digits=3)
         self.row(f"{name}, frames doubtful", summary["frames"]["by_state"].get("doubtful", 0), "",
                  digits=0)
 
     def walk_with_loops(self, seed, people):
         name = f"loop_room {seed}, {people}"
         sequence, folder, summary = self.walk_run("loop_room", seed, people)
-        track = self.check_track(name, sequence, folder)
-        self.row(f"{name}, ATE RMSE", track["ate_m"]["rmse"], "m", 0.05, digits=3)
+        track = self.check_track(name, sequence, folder, summary)
+        self.ate_row(f"{name}, ATE RMSE", summary, 0.05, digits=3)
         self.row(f"{name}, error of the last pose", track["last_m"], "m", 0.04, digits=3)
         self.surface(name, sequence, folder)
         self.wrong_loops(name, sequence, folder)
@@ -68,8 +67,8 @@ class Walks(Falls, Maps):
 
     def fall_without_loops(self, seed, people):
         name = f"fall_short {seed}, {people}, no loop closing"
-        sequence, folder, _ = self.walk_run("fall_short", seed, people, loops=False)
-        track = self.check_track(name, sequence, folder)
+        sequence, folder, summary = self.walk_run("fall_short", seed, people, loops=False)
+        track = self.check_track(name, sequence, folder, summary)
         after = self.after_loss(folder)
         posed = sum(row["has_pose"] == "1" for row in after)
         text = "never lost" if not after else "yes" if posed == 0 else f"{posed} poses after it"
@@ -80,8 +79,8 @@ class Walks(Falls, Maps):
     def fall_with_loops(self, seed, people):
         name = f"fall_short {seed}, {people}"
         sequence, folder, summary = self.walk_run("fall_short", seed, people)
-        track = self.check_track(name, sequence, folder)
-        self.row(f"{name}, ATE RMSE, fall included", track["ate_m"]["rmse"], "m", 0.04, digits=3)
+        self.check_track(name, sequence, folder, summary)
+        self.ate_row(f"{name}, ATE RMSE, fall included", summary, 0.04, digits=3)
         self.wrong_loops(name, sequence, folder)
         after = self.after_loss(folder)
         posed = [float(row["stamp"]) for row in after if row["has_pose"] == "1"]
@@ -121,8 +120,8 @@ class Walks(Falls, Maps):
             for seed in self.options.seeds:
                 name = f"{scenario} {seed}, network"
                 sequence, folder, summary = self.walk_run(scenario, seed, "network", WALKING_SECONDS)
-                self.check_track(name, sequence, folder)
-                self.row(f"{name}, ATE RMSE", summary["ate_rmse_m"], "m", bar)
+                self.check_track(name, sequence, folder, summary)
+                self.ate_row(f"{name}, ATE RMSE", summary, bar)
                 self.row(f"{name}, frames lost", summary["frames"]["lost"], "", 0, digits=0)
 
     def covariance(self):
@@ -134,3 +133,11 @@ class Walks(Falls, Maps):
             share = self.evaluate("covariance", sequence, folder.parent / "status.csv")
             name = f"{scenario} {seed}, motion's true error within 3 sigma"
             self.row(name, 100 * share["within_3_sigma"], "%", 90, most=False, digits=1)
+            self.nees_rows(f"{scenario} {seed}", share["nees_5_s"], 85 if scenario == "loop_room" else None)
+
+    def nees_rows(self, name, nees, bar):
+        """Both ways: whether errors of motions over a second are as large as reported."""
+        self.row(f"{name}, NEES of motions over 1 s, means of five within their 95 % band",
+                 100 * nees["inside"], "%", bar, most=False, digits=1)
+        self.fact(f"{name}, the same, below (too cautious), above (too sure); mean, which should be 6", None,
+                  f"{100 * nees['too_low']:.1f}, {100 * nees['too_high']:.1f} %; {nees['mean']:.2f}")

@@ -34,6 +34,26 @@ class Bench(unittest.TestCase):
             self.assertNotIn("old", text)
             self.assertNotIn("one", text)
 
+    def test_what_was_told_at_the_time_stands_beside_what_loops_made_of_it(self):
+        from bench_runs import Runs
+
+        class Options:
+            output = pathlib.Path(tempfile.gettempdir())
+
+        runs = Runs(Options)
+        runs.print_row = lambda row: None
+        summary = {"ate_rmse_m": 0.026, "wrong_poses": 0, "false_poses": 9,
+                   "live": {"ate_rmse_m": 0.094, "wrong_poses": 30, "false_poses": 915}}
+        runs.ate_row("a walk, ATE", summary, 0.05, digits=3)
+        runs.wrong_rows("a walk", summary)
+        self.assertEqual(runs.rows, [
+            ("a walk, ATE", "0.026 m; live 0.094", "<= 0.05", True),
+            ("a walk, wrong poses", "0; live 30", "<= 0", True),
+            ("a walk, false poses", "9; live 915", "", None)])
+        del summary["live"], runs.rows[:]
+        runs.ate_row("a run whose poses nothing corrects", summary)
+        self.assertEqual(runs.rows[0][1], "0.0260 m")
+
     def test_what_becomes_of_live_frames_is_read_from_the_feeder(self):
         from bench_live import understand
         said = ("[INFO]: 900 frames sent, 664 fused, 236 dropped: fusion fell behind; from frame to TF 80.1 ms median, "

@@ -200,9 +200,26 @@ TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
   EXPECT_EQ(s.at("frames").at("left_out"), 1);
   EXPECT_EQ(s.at("frames").at("by_outcome").at("dropped"), 1);
   EXPECT_NEAR(s.at("ate_rmse_m").get<double>(), 0, 1e-9);
+  EXPECT_EQ(s.at("live").at("wrong_poses"), 0);
   EXPECT_FALSE(s.contains("loops"));
   EXPECT_FALSE(s.contains("peak_memory_mb"));
   EXPECT_FALSE(std::filesystem::exists(folder / "trajectory.txt")) << "the chain has written it";
+}
+
+TEST_F(RunReportTest, WhatWasToldAtTheTimeIsHeldAgainstTheTruthToo) {
+  EXPECT_FALSE(summary().contains("live")) << "nothing is corrected yet";
+  const Trajectory told = report.trajectory();
+  Trajectory corrected = told;
+  for (std::size_t i = 20; i < corrected.size(); ++i) {
+    corrected[i].T_world_camera.translation().z() += 0.2;
+  }
+  report.setCorrected(corrected);
+  const auto s = summary();
+  EXPECT_EQ(s.at("false_poses"), corrected.size() - 20);
+  EXPECT_GT(s.at("ate_rmse_m").get<double>(), 0.04);
+  EXPECT_EQ(s.at("live").at("false_poses"), 0);
+  EXPECT_NEAR(s.at("live").at("ate_rmse_m").get<double>(), 0, 1e-9);
+  EXPECT_NE(report.table().find("as told at the time"), std::string::npos) << report.table();
 }
 
 TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {

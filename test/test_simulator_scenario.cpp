@@ -50,6 +50,19 @@ TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
   }
 }
 
+TEST(SimulatorScenario, TheCameraIsThatOfTheSeedUnlessItIsNamed) {
+  ScenarioChanges changes;
+  EXPECT_EQ(loadScenario("walking_xyz").depth.specimen, 1);
+  changes.seed = 5U;
+  EXPECT_EQ(loadScenario("walking_xyz", changes).depth.specimen, 5);
+  changes.seed = 1000000000U;
+  EXPECT_LE(loadScenario("walking_xyz", changes).depth.specimen, 1000000);
+  changes.assignments = {"depth.specimen=1"};
+  EXPECT_EQ(loadScenario("walking_xyz", changes).depth.specimen, 1);
+  EXPECT_EQ(load(kRoom + "seed: 7\ndepth: {specimen: 2}\n").depth.specimen, 2);
+  EXPECT_EQ(load(kRoom + "seed: 7\ndepth: {axial: 2}\n").depth.specimen, 7);
+}
+
 TEST(SimulatorScenario, EveryValueCanBeChanged) {
   ScenarioChanges changes;
   changes.assignments = {"camera.period_s=7", "people.1.height_m=1.9", "color.noise=0"};

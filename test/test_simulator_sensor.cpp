@@ -5,28 +5,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "depth_wall.hpp"
 #include "posefusion/calibration/depth_correction.hpp"
 #include "simulator/color_sensor.hpp"
 #include "simulator/depth_distortion.hpp"
-#include "simulator/depth_sensor.hpp"
+#include "simulator/depth_noise.hpp"
 
 namespace pf::simulator {
 namespace {
-
-PinholeCamera xtion() { return {640, 480, 525, 525, 319.5, 239.5, {}}; }
-
-DepthView wall(float z_m, float cosine = 1.0F) {
-  const cv::Size size(640, 480);
-  return {cv::Mat(size, CV_32FC1, cv::Scalar(z_m)), cv::Mat::zeros(size, CV_8UC1),
-          cv::Mat(size, CV_32FC1, cv::Scalar(cosine)), cv::Mat(size, CV_32FC1, cv::Scalar(0.7)),
-          cv::Mat::zeros(size, CV_32FC1)};
-}
-
-cv::Mat sense(const DepthView& view, const DepthConfig& config, std::uint32_t key = 1U) {
-  cv::Mat depth, mask;
-  senseDepth(view, xtion(), config, key, depth, mask);
-  return depth;
-}
 
 TEST(SimulatorDepth, SigmasAreThoseOfNguyen) {
   EXPECT_NEAR(axialSigmaM(0.4, 0.0), 0.0012, 1e-9);
@@ -50,12 +36,11 @@ TEST(SimulatorDepth, StepsGrowWithTheSquareOfTheDistance) {
 }
 
 TEST(SimulatorDepth, TheTrueFieldUndoesTheDistortion) {
-  DepthConfig config;
-  config.axial = config.lateral = config.dropouts = 0.0;
-  config.disparity_steps = 1024.0;  // as good as none
+  DepthConfig config = quietDepth();
+  config.distortion = 1.0;
   for (const int specimen : {1, 5}) {
     config.specimen = specimen;
-    const DepthField field = trueField(config, xtion());
+    const DepthField field = trueField(config, xtion(), 0.0);
     for (const float z : {1.5F, 2.5F, 4.0F}) {
       const cv::Mat depth = sense(wall(z), config);
       cv::Mat corrected, off;
@@ -72,7 +57,7 @@ TEST(SimulatorDepth, TheTrueFieldUndoesTheDistortion) {
     }
   }
   config.noise = false;
-  EXPECT_EQ(trueField(config, xtion()).rms(), 0.0);
+  EXPECT_EQ(trueField(config, xtion(), 0.0).rms(), 0.0);
 }
 
 TEST(SimulatorDepth, NoiseOnAWallIsTheModels) {
@@ -146,9 +131,10 @@ TEST(SimulatorDepth, MisregistrationMovesDepthAndMaskBesideTheColour) {
   DepthConfig config;
   config.noise = false;
   cv::Mat depth, mask, moved_depth, moved_mask;
-  senseDepth(view, xtion(), config, 1U, depth, mask);
+  const PinholeCamera camera = xtion();
+  senseDepth({view, camera, config, 1U}, depth, mask);
   config.misregistration_px = 3.0;
-  senseDepth(view, xtion(), config, 1U, moved_depth, moved_mask);
+  senseDepth({view, camera, config, 1U}, moved_depth, moved_mask);
   const cv::Rect from(0, 0, 637, 480), to(3, 0, 637, 480);
   EXPECT_EQ(cv::norm(depth(from), moved_depth(to), cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(mask(from), moved_mask(to), cv::NORM_INF), 0.0);

@@ -73,6 +73,25 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
   EXPECT_NEAR(track.at("ate_held_m").at("rmse").get<double>(),
               summaryOf(out).at("ate_held_rmse_m").get<double>(), 1e-6);
   EXPECT_GT(fs::file_size(own / "plan.png"), 10'000U);
+  EXPECT_EQ(track.at("false_poses"), 0);
+  EXPECT_EQ(track.at("live").at("false_poses"), 0);
+
+  // What was told at the time is read from the folder by itself.
+  const std::string told = out + "/latest/trajectory_live.txt";
+  Trajectory live = loadTrajectory(told);
+  live.back().T_world_camera.translation().x() += 0.5;
+  saveTrajectory(told, live, "");
+  ASSERT_EQ(run({sequence(), out, "--json"}, "posefusion_evaluate"), 0) << said;
+  track = nlohmann::json::parse(said);
+  EXPECT_EQ(track.at("false_poses"), 0);
+  EXPECT_EQ(track.at("live").at("false_poses"), 1);
+  EXPECT_EQ(track.at("live").at("wrong_poses"), 1);
+  EXPECT_NEAR(track.at("live").at("worst_m").get<double>(), 0.5, 0.05);
+  ASSERT_EQ(run({sequence(), out}, "posefusion_evaluate"), 0) << said;
+  EXPECT_TRUE(hasSaid("final, loops corrected")) << said;
+  EXPECT_TRUE(hasSaid("live, as told")) << said;
+  ASSERT_EQ(run({sequence(), told, "--json"}, "posefusion_evaluate"), 0) << said;
+  EXPECT_FALSE(nlohmann::json::parse(said).contains("live")) << "a file is what it is";
 
   // Half of the poses taken away, and a jump in what is left.
   Trajectory half = loadTrajectory(out + "/latest/trajectory.txt");
@@ -87,6 +106,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
 
   ASSERT_EQ(run({"covariance", sequence(), status, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_EQ(nlohmann::json::parse(said).at("motions"), kFrames - 1);
+  EXPECT_EQ(nlohmann::json::parse(said).at("nees_5_s").at("windows"), 0) << "it is too short";
   EXPECT_EQ(run({"covariance", sequence(), out + "/latest/trajectory.txt"}, "posefusion_evaluate"),
             1);
   EXPECT_TRUE(hasSaid("is no table of posefusion_run --save-status")) << said;

@@ -122,20 +122,63 @@ TEST(Coverage, CountsAllFramesAndTheSharpOnes) {
   EXPECT_DOUBLE_EQ(coverageOf({}, {}).share(), 1.0);
 }
 
-TEST(PlaceErrors, AlignOnTheFirstSecondsOrBeforeTheFall) {
+TEST(PlaceErrors, AnEndThatIsOffIsAllOfTheErrorAndNoneOfItIsSharedOut) {
   const Trajectory truth = circle();
-  const Trajectory estimate =
-      movedBy(motion(3, 1, 0, 1), slidden(slidden(circle(), 100, {0.5, 0, 0}), 150, {0.1, 0, 0}));
-  TrackFacts facts = factsOf(truth);
-  PlaceErrors errors = placeErrors(truth, estimate, facts);
-  EXPECT_EQ(errors.count, 200U);
-  EXPECT_EQ(errors.false_count, 100U);
-  EXPECT_NEAR(errors.worst_m, 0.6, 1e-9);
-  facts.first_fall_ns = 100 * 100 * kMs;
-  EXPECT_EQ(placeErrors(truth, estimate, facts).false_count, 100U);
-  facts.first_fall_ns = -1;  // before the first pose: as without a fall
-  EXPECT_EQ(placeErrors(truth, estimate, facts).false_count, 100U);
-  EXPECT_THROW(placeErrors({}, estimate, facts), InputError);
+  const Trajectory estimate = movedBy(motion(3, 1, 0, 1), slidden(circle(), 180, {0, 0.2, 0}));
+  const PlaceErrors errors = placeErrors(truth, estimate);
+  EXPECT_EQ(errors.distance_m.count, 200U);
+  EXPECT_NEAR(errors.distance_m.max, 0.2, 1e-9);
+  EXPECT_NEAR(errors.distance_m.rmse, 0.2 * std::sqrt(20.0 / 200.0), 1e-9);
+  EXPECT_NEAR(errors.worst_deg, 0.0, 1e-6);
+  EXPECT_EQ(errors.false_count, 20U);
+  const auto pairs = matchPoses(truth, estimate);
+  EXPECT_LT(absoluteError(pairs, align(pairs, false)).max, 0.19)
+      << "the best fit gives the others a part of it";
+  EXPECT_EQ(placeErrors(truth, slidden(circle(), 180, {0, 0.09, 0})).false_count, 0U);
+}
+
+TEST(PlaceErrors, DriftAndKeptPlacesCountWhichNoMotionOverASecondTells) {
+  Trajectory drifted = circle();
+  for (std::size_t i = 0; i < drifted.size(); ++i) {
+    drifted[i].T_world_camera.pretranslate(Eigen::Vector3d(0.008 * static_cast<double>(i), 0, 0));
+  }
+  EXPECT_TRUE(wrongPoses(circle(), drifted).empty());
+  const PlaceErrors errors = placeErrors(circle(), drifted);
+  EXPECT_GT(errors.false_count, 180U);
+  EXPECT_GT(errors.distance_m.max, 1.5);
+}
+
+TEST(PlaceErrors, ATurnOnTheSpotCounts) {
+  Trajectory turned = circle();
+  const double six_deg = 6.0 * M_PI / 180.0;
+  for (std::size_t i = 150; i < turned.size(); ++i) {
+    turned[i].T_world_camera.linear() *= expSo3({0, 0, six_deg});
+  }
+  const PlaceErrors errors = placeErrors(circle(), turned);
+  EXPECT_EQ(errors.false_count, 50U);
+  EXPECT_NEAR(errors.distance_m.max, 0.0, 1e-9);
+  EXPECT_NEAR(errors.worst_deg, 6.0, 1e-6);
+}
+
+TEST(PlaceErrors, AJumpAtTheTimeIsInTheLiveTrajectoryAlone) {
+  // For three seconds the camera was told 0.3 m off; a loop has corrected that since.
+  const Trajectory truth = circle();
+  Trajectory live = truth;
+  for (std::size_t i = 80; i < 110; ++i) {
+    live[i].T_world_camera.pretranslate(Eigen::Vector3d(0, 0, 0.3));
+  }
+  EXPECT_EQ(placeErrors(truth, truth).false_count, 0U);
+  EXPECT_EQ(placeErrors(truth, live).false_count, 30U);
+  EXPECT_EQ(wrongPoses(truth, live).size(), 20U) << "a second from the jump, a second from the end";
+}
+
+TEST(PlaceErrors, NeedATruthAndBeginWhereThereIsOne) {
+  Trajectory truth = circle();
+  truth.erase(truth.begin(), truth.begin() + 50);
+  const Trajectory estimate = slidden(circle(), 40, {0.5, 0, 0});
+  EXPECT_EQ(placeErrors(truth, estimate).false_count, 0U) << "it slid before anything was known";
+  EXPECT_EQ(placeErrors(truth, estimate).distance_m.count, 150U);
+  EXPECT_THROW(placeErrors({}, estimate), InputError);
 }
 
 TEST(HeldError, IsThatOfThePosesWhereThereIsNoGap) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <utility>
 
 #include "posefusion/core/se3.hpp"
 
@@ -12,7 +13,6 @@ namespace pf {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kAligned_ns = 5 * kSecond_ns;
 constexpr double kDegrees = 180.0 / M_PI;
 
 /// The estimated poses with the true ones of just their time.
@@ -25,8 +25,8 @@ std::vector<PosePair> pairWithTruth(const Trajectory& truth, const Trajectory& e
   return pairs;
 }
 
-double distance(const PosePair& pair, const Eigen::Vector3d& estimate) {
-  return (estimate - pair.truth.T_world_camera.translation()).norm();
+double angleDeg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return kDegrees * logSo3(a.linear().transpose() * b.linear()).norm();
 }
 
 /// Whether the motion from one pair to another differs too much between truth and estimate.
@@ -34,9 +34,8 @@ bool movedWrongly(const PosePair& from, const PosePair& to) {
   const Eigen::Isometry3d truth = from.truth.T_world_camera.inverse() * to.truth.T_world_camera;
   const Eigen::Isometry3d estimate =
       from.estimate.T_world_camera.inverse() * to.estimate.T_world_camera;
-  const double angle_rad = logSo3(estimate.linear().transpose() * truth.linear()).norm();
   return (estimate.translation() - truth.translation()).norm() > kWrongDistance_m ||
-         angle_rad * kDegrees > kWrongAngle_deg;
+         angleDeg(estimate, truth) > kWrongAngle_deg;
 }
 
 double shareOf(std::size_t part, std::size_t whole) {
@@ -82,26 +81,26 @@ std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& e
   return wrong;
 }
 
-PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate,
-                        const TrackFacts& facts) {
+PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate) {
   const std::vector<PosePair> pairs = pairWithTruth(truth, estimate);
   std::vector<PosePair> first;
-  const auto takeBefore = [&](std::int64_t end_ns) {
-    for (const PosePair& pair : pairs) {
-      if (pair.estimate.stamp_ns < end_ns) first.push_back(pair);
+  for (const PosePair& pair : pairs) {
+    if (pair.estimate.stamp_ns < pairs.front().estimate.stamp_ns + kSecond_ns) {
+      first.push_back(pair);
     }
-  };
-  if (facts.first_fall_ns) takeBefore(*facts.first_fall_ns);
-  if (first.empty() && !pairs.empty()) takeBefore(pairs.front().estimate.stamp_ns + kAligned_ns);
+  }
   PlaceErrors errors;
   errors.T_truth_estimate = alignPoses(first);
-  errors.count = pairs.size();
+  std::vector<double> distances;
   for (const PosePair& pair : pairs) {
-    const Eigen::Vector3d position = pair.estimate.T_world_camera.translation();
-    const double error_m = distance(pair, errors.T_truth_estimate * position);
-    if (error_m > kWrongDistance_m) ++errors.false_count;
-    errors.worst_m = std::max(errors.worst_m, error_m);
+    const Eigen::Isometry3d found = errors.T_truth_estimate * pair.estimate.T_world_camera;
+    const Eigen::Isometry3d& wanted = pair.truth.T_world_camera;
+    const double angle_deg = angleDeg(found, wanted);
+    distances.push_back((found.translation() - wanted.translation()).norm());
+    if (distances.back() > kWrongDistance_m || angle_deg > kWrongAngle_deg) ++errors.false_count;
+    errors.worst_deg = std::max(errors.worst_deg, angle_deg);
   }
+  errors.distance_m = statisticsOf(std::move(distances));
   return errors;
 }
 

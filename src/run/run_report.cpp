@@ -109,7 +109,15 @@ std::optional<RunErrors> RunReport::errors() const {
   errors.held_m = heldError(truth_, trajectory_, frames_ns_, alignment);
   errors.wrong = wrongPoses(truth_, trajectory_).size();
   errors.per_second = relativeErrorPerSecond(truth_, trajectory_);
+  errors.false_count = placeErrors(truth_, trajectory_).false_count;
   return errors;
+}
+
+std::optional<LiveErrors> RunReport::liveErrors() const {
+  const auto pairs = matchPoses(truth_, live_);
+  if (pairs.size() < 3) return std::nullopt;
+  return LiveErrors{absoluteError(pairs, align(pairs, false)), wrongPoses(truth_, live_).size(),
+                    placeErrors(truth_, live_).false_count};
 }
 
 std::string RunReport::summary(std::size_t surfels) const {
@@ -128,10 +136,16 @@ std::string RunReport::summary(std::size_t surfels) const {
     out["ate_rmse_m"] = e->ate_m.rmse;
     out["ate_held_rmse_m"] = e->held_m.rmse;
     out["wrong_poses"] = e->wrong;
+    out["false_poses"] = e->false_count;
     if (e->per_second.translation_m.count > 0) {
       out["rpe_trans_m_per_s"] = e->per_second.translation_m.rmse;
       out["rpe_rot_deg_per_s"] = e->per_second.rotation_deg.rmse;
     }
+  }
+  if (const auto live = liveErrors()) {
+    out["live"] = {{"ate_rmse_m", live->ate_m.rmse},
+                   {"wrong_poses", live->wrong},
+                   {"false_poses", live->false_count}};
   }
   if (depth_difference_m_) out["depth_median_difference_m"] = *depth_difference_m_;
   for (const auto& [name, time] : statistics_.stages()) {
@@ -166,6 +180,25 @@ void RunReport::writePictures(const std::string& folder, const SurfelMap& map) c
   if (!strip.empty()) savePng(folder + "/people.png", strip);
 }
 
+std::string RunReport::errorLines() const {
+  const auto e = errors();
+  if (!e) return {};
+  std::ostringstream out;
+  out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count << " poses, "
+      << fixed(e->held_m.rmse, 4) << " m with the last pose held where there is none\n"
+      << "wrong    " << e->wrong
+      << " poses (motion over a second off by more than 0.10 m or 5 deg)\n"
+      << "false    " << e->false_count << " poses (off by as much, aligned on the first second)\n";
+  if (const auto live = liveErrors()) {
+    out << "live     ATE " << fixed(live->ate_m.rmse, 4) << " m, " << live->wrong << " wrong, "
+        << live->false_count
+        << " false, as told at the time; the above is as corrected in the end\n";
+  }
+  out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
+      << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";
+  return out.str();
+}
+
 std::string RunReport::table() const {
   const FrameCounts& f = statistics_.frames();
   std::ostringstream out;
@@ -186,14 +219,7 @@ std::string RunReport::table() const {
         << corrections_.accepted << " corrections; " << loops_.found << " of " << loops_.searched
         << " lost frames found\n";
   }
-  if (const auto e = errors()) {
-    out << "ATE      " << fixed(e->ate_m.rmse, 4) << " m RMSE over " << e->ate_m.count << " poses, "
-        << fixed(e->held_m.rmse, 4) << " m with the last pose held where there is none\n"
-        << "wrong    " << e->wrong
-        << " poses (motion over a second off by more than 0.10 m or 5 deg)\n";
-    out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
-        << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";
-  }
+  out << errorLines();
   if (depth_difference_m_) {
     out << "depth    " << fixed(1e3 * *depth_difference_m_, 2) << " mm median against the map\n";
   }

@@ -27,9 +27,7 @@ SequenceTruth loadSequenceTruth(const std::string& path) {
   truth.facts.frames_ns = listTumFrames(path);
   std::sort(truth.facts.frames_ns.begin(), truth.facts.frames_ns.end());
   if (!fs::exists(folder / "events.json")) return truth;
-  const RecordedEvents events = loadEvents(folder / "events.json");
-  truth.facts.blurred_ns = events.blurred_ns;
-  if (!events.fall_starts_ns.empty()) truth.facts.first_fall_ns = events.fall_starts_ns.front();
+  truth.facts.blurred_ns = loadEvents(folder / "events.json").blurred_ns;
   return truth;
 }
 

@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "simulator/sensor_config.hpp"
+#include "simulator/color_config.hpp"
 
 namespace pf::simulator {
 

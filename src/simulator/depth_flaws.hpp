@@ -3,8 +3,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "simulator/depth_config.hpp"
 #include "simulator/random.hpp"
-#include "simulator/sensor_config.hpp"
 
 namespace pf::simulator {
 

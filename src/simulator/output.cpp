@@ -23,9 +23,10 @@ class TumOutput : public Output {
     for (const char* part : {"mask", "person_mask"}) makeFolder(folder_ / part);
     saveSceneMesh(folder_ / "scene.ply", simulation.world());
     const Scenario& scenario = simulation.scenario();
-    saveCalibration(folder_ / "depth_field.yaml",
-                    {"specimen " + std::to_string(scenario.depth.specimen), scenario.camera,
-                     trueField(scenario.depth, scenario.camera)});
+    saveCalibration(
+        folder_ / "depth_field.yaml",
+        {"specimen " + std::to_string(scenario.depth.specimen), scenario.camera,
+         trueField(scenario.depth, scenario.camera, scenario.start_s + 0.5 * scenario.duration_s)});
     saveScenePoints(folder_ / "scene_points.ply", simulation.world(), 0.03);
   }
 

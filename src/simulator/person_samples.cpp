@@ -124,7 +124,7 @@ class Studio {
     }
     PersonSample out;
     const DepthConfig config = drawDepthConfig(kShrink, dice_);
-    senseDepth(view_, camera, config, dice_.next(), out.depth_mm, out.person);
+    senseDepth({view_, camera, config, dice_.next()}, out.depth_mm, out.person);
     addFlaws(dice_, out.depth_mm);
     for (std::size_t i = 0; i < cast_.size(); ++i) {
       if (arrangement.present[i] == 0) continue;

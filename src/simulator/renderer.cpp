@@ -10,6 +10,9 @@
 namespace pf::simulator {
 namespace {
 
+/// Of the texture of cloth, hair and skin.
+constexpr float kClothContrast = 0.1F;
+
 using Eigen::Vector3f;
 
 constexpr int kTile = 32;  // pixels, a multiple of the 4x4 of a packet
@@ -158,6 +161,7 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& 
   out.cosine.at<float>(row, col) = 0.0F;
   out.infrared.at<float>(row, col) = 0.0F;
   out.gloss.at<float>(row, col) = 0.0F;
+  out.contrast.at<float>(row, col) = 0.0F;
   if (!any) return;
   const Vector3f n(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
   out.cosine.at<float>(row, col) = std::abs(n.dot(d)) / std::max(n.norm() * d.norm(), 1e-12F);
@@ -165,8 +169,10 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& 
     const Material& material = world_.materials[world_.mesh.materials[hit.primID[lane]]];
     out.infrared.at<float>(row, col) = material.infrared;
     out.gloss.at<float>(row, col) = material.gloss;
+    out.contrast.at<float>(row, col) = material.contrast;
     return;
   }
+  out.contrast.at<float>(row, col) = kClothContrast;
   const Avatar& avatar = people.avatar(geometry - 1U);
   out.infrared.at<float>(row, col) =
       avatar.appearance().infrared(avatar.surfacePoint(hit.primID[lane], hit.u[lane], hit.v[lane]));
@@ -175,7 +181,7 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& 
 void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, const PosedPeople& people,
                      DepthView& out) const {
   const cv::Size size(camera.width, camera.height);
-  for (cv::Mat* image : {&out.depth_m, &out.cosine, &out.infrared, &out.gloss}) {
+  for (cv::Mat* image : {&out.depth_m, &out.cosine, &out.infrared, &out.gloss, &out.contrast}) {
     image->create(size, CV_32FC1);
   }
   out.person.create(size, CV_8UC1);

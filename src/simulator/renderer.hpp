@@ -40,6 +40,7 @@ struct DepthView {
   cv::Mat cosine;    ///< CV_32FC1, of the angle between view and surface
   cv::Mat infrared;  ///< CV_32FC1, reflectance
   cv::Mat gloss;     ///< CV_32FC1
+  cv::Mat contrast;  ///< CV_32FC1, of the texture (Texture::contrast()); empty: none
 };
 
 /// What is drawn: the people of a frame and the light of it.

@@ -131,6 +131,9 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   YamlFields color(map.map("color")), depth(map.map("depth"));
   visitFields(s.color, color);
   visitFields(s.depth, depth);
+  if (!tree["depth"] || !tree["depth"]["specimen"]) {
+    s.depth.specimen = static_cast<int>(s.seed % 1000001U);
+  }
   if (s.depth.min_m >= s.depth.max_m) map.fail("depth.min_m", "is not less than max_m");
   color.finish();
   depth.finish();

@@ -7,9 +7,10 @@
 
 #include "posefusion/core/camera.hpp"
 #include "simulator/camera_path.hpp"
+#include "simulator/color_config.hpp"
+#include "simulator/depth_config.hpp"
 #include "simulator/furniture.hpp"
 #include "simulator/script.hpp"
-#include "simulator/sensor_config.hpp"
 
 namespace pf::simulator {
 

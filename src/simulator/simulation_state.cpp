@@ -193,7 +193,7 @@ void Simulation::State::draw(const Shot& shot, SimulatedFrame& out) {
   color_sensor.expose(radiance, out.exposure, hash(scenario.seed, 74U, number), out.frame.color);
   const ViewSample depth_view = viewAt(path->at(m.depth), 0.0);
   renderer.depth(scenario.camera, depth_view, shot.in_depth, view);
-  senseDepth(view, scenario.camera, scenario.depth, hash(scenario.seed, 75U, number),
+  senseDepth({view, scenario.camera, scenario.depth, hash(scenario.seed, 75U, number), m.depth},
              out.frame.depth, out.mask);
   observePeople(m, out);
 }

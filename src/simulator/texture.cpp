@@ -28,6 +28,14 @@ const std::array<float, 256>& linearTable() {
   return table;
 }
 
+float contrastOf(const cv::Mat& linear) {
+  cv::Mat grey, around;
+  cv::transform(linear, grey, cv::Matx13f(1.0F / 3.0F, 1.0F / 3.0F, 1.0F / 3.0F));
+  cv::blur(grey, around, {9, 9});
+  const double mean = std::max(cv::mean(grey)[0], 0.01);
+  return static_cast<float>(cv::norm(grey, around) / std::sqrt(grey.total()) / mean);
+}
+
 }  // namespace
 
 float linearOf(std::uint8_t srgb) { return linearTable()[srgb]; }
@@ -48,6 +56,7 @@ Texture::Texture(const cv::Mat& picture) {
   }
   const cv::Scalar mean = cv::mean(linear);
   mean_ = Eigen::Vector3d(mean[0], mean[1], mean[2]).cast<float>();
+  contrast_ = contrastOf(linear);
   for (;;) {
     Level level;
     level.side = linear.cols;

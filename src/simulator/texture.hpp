@@ -22,6 +22,10 @@ class Texture {
   /// Mean linear reflectance.
   const Eigen::Vector3f& mean() const { return mean_; }
 
+  /// Standard deviation of the grey about the mean of its neighbourhood (9x9 texels), by the mean
+  /// grey: what a stereo camera can match.
+  float contrast() const { return contrast_; }
+
  private:
   struct Level {
     int side = 0;
@@ -29,6 +33,7 @@ class Texture {
   };
   std::vector<Level> levels_;
   Eigen::Vector3f mean_;
+  float contrast_ = 0.0F;
 };
 
 /// sRGB byte to linear [0, 1], and back (clamped).

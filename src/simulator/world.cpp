@@ -55,6 +55,7 @@ std::uint16_t World::material(const std::string& kind, std::uint32_t seed, const
   material.tint = tint;
   const Vector3f mean = textures[static_cast<std::size_t>(it->second)].mean().cwiseProduct(tint);
   material.infrared = 0.25F + 0.6F * mean.maxCoeff();
+  material.contrast = textures[static_cast<std::size_t>(it->second)].contrast();
   setInfrared(material, kind);
   materials.push_back(material);
   return static_cast<std::uint16_t>(materials.size() - 1);

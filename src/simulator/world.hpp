@@ -20,6 +20,7 @@ struct Material {
   Eigen::Vector3f tint = Eigen::Vector3f::Ones();
   Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< radiance
   float infrared = 0.6F;                               ///< reflectance of the projected pattern
+  float contrast = 0.0F;                               ///< of the texture
   float gloss = 0.0F;  ///< 0 matt, 1 mirror-like: no depth where the pattern is reflected away
 };
 

@@ -84,7 +84,7 @@ CLI::App* addMasksCommand(CLI::App& app, PairQuestion& question) {
 
 CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
   auto* command = app.add_subcommand(
-      "covariance", "how often the reported covariance covers the true error of a frame's motion");
+      "covariance", "whether the true errors of motions are as large as the reported covariance");
   command->add_option("truth", question.truth, "sequence, or true trajectory")->required();
   command->add_option("status", question.checked, "table of posefusion_run --save-status")
       ->required();

@@ -5,10 +5,29 @@
 
 #include "evaluate.hpp"
 #include "posefusion/evaluation/covariance_check.hpp"
+#include "posefusion/evaluation/nees.hpp"
 #include "posefusion/io/status_file.hpp"
 #include "posefusion/run/sequence_facts.hpp"
 
 namespace pf {
+namespace {
+
+/// Windows of so many motions of a second.
+constexpr std::size_t kShort = 1, kLong = 5;
+
+nlohmann::ordered_json toJson(const NeesShare& nees) {
+  return {{"windows", nees.windows}, {"low", nees.low},         {"high", nees.high},
+          {"mean", nees.mean},       {"median", nees.median},   {"axes", nees.axes},
+          {"inside", nees.inside},   {"too_low", nees.too_low}, {"too_high", nees.too_high}};
+}
+
+void printNees(const char* what, const NeesShare& nees) {
+  std::printf("%-34s %.1f %% of %zu windows within %.2f..%.2f; %.1f %% below, %.1f %% above\n",
+              what, 100 * nees.inside, nees.windows, nees.low, nees.high, 100 * nees.too_low,
+              100 * nees.too_high);
+}
+
+}  // namespace
 
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json) {
   std::vector<UncertainPose> poses;
@@ -16,13 +35,18 @@ void evaluateCovariance(const std::string& truth, const std::string& status, boo
     if (row.outcome == "fused" || row.outcome == "located")
       poses.push_back({row.stamp_ns, row.T_map_camera, row.covariance});
   }
-  const CovarianceShare share = checkCovariances(loadSequenceTruth(truth).trajectory, poses);
+  const Trajectory true_poses = loadSequenceTruth(truth).trajectory;
+  const CovarianceShare share = checkCovariances(true_poses, poses);
+  const NeesShare one = neesOfMotions(true_poses, poses, kShort);
+  const NeesShare five = neesOfMotions(true_poses, poses, kLong);
   if (json) {
     const nlohmann::ordered_json out = {{"motions", share.motions},
                                         {"within_3_sigma", share.within},
                                         {"within_ellipsoid", share.within_ellipsoid},
                                         {"axes_within_3_sigma", share.axes},
-                                        {"median_sigmas", share.median_sigmas}};
+                                        {"median_sigmas", share.median_sigmas},
+                                        {"nees_1_s", toJson(one)},
+                                        {"nees_5_s", toJson(five)}};
     std::cout << out.dump(2) << "\n";
     return;
   }
@@ -33,6 +57,14 @@ void evaluateCovariance(const std::string& truth, const std::string& status, boo
   std::printf("axes x y z, about x y z            ");
   for (const double axis : share.axes) std::printf(" %.2f", 100 * axis);
   std::printf(" %%\nlargest error in sigmas, median    %.2f\n", share.median_sigmas);
+  std::printf("NEES of motions over a second      %.2f median, %.2f mean (5.35, 6 expected)\n",
+              one.median, one.mean);
+  std::printf("  median |error| by its sigma's    ");
+  for (const double axis : one.axes) std::printf(" %.2f", axis);
+  std::printf("  (1 expected)\n");
+  printNees("  within its 95 % band", one);
+  printNees("  mean of five within its band", five);
+  std::printf("  below: errors smaller than reported (too cautious); above: larger (too sure)\n");
 }
 
 }  // namespace pf

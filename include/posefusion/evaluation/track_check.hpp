@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "posefusion/core/trajectory.hpp"
@@ -12,9 +11,8 @@ namespace pf {
 
 /// What is known of the recording beside its true poses. Stamps in nanoseconds, in order.
 struct TrackFacts {
-  std::vector<std::int64_t> frames_ns;        ///< of all frames; empty: not known
-  std::vector<std::int64_t> blurred_ns;       ///< of the frames that are blurred
-  std::optional<std::int64_t> first_fall_ns;  ///< when the camera first falls
+  std::vector<std::int64_t> frames_ns;   ///< of all frames; empty: not known
+  std::vector<std::int64_t> blurred_ns;  ///< of the frames that are blurred
 };
 
 /// How many frames have a pose.
@@ -39,18 +37,19 @@ constexpr double kWrongAngle_deg = 5.0;
 /// are left out.
 std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& estimate);
 
-/// Distances from the truth once the frames are brought together by alignPoses() over the poses
-/// before the first fall (without one: of the first five seconds).
+/// How far the poses are from the truth for one who knows only where the camera began: the frames
+/// are brought together by alignPoses() over the poses of the first second that has any, never by a
+/// fit to what comes later.
 struct PlaceErrors {
-  std::size_t count = 0;        ///< poses that have a true one
-  std::size_t false_count = 0;  ///< of them farther off than kWrongDistance_m; drift counts too
-  double worst_m = 0;
+  ErrorStatistics distance_m;   ///< of the poses that have a true one
+  double worst_deg = 0;         ///< the largest angle between the two
+  std::size_t false_count = 0;  ///< poses off by more than kWrongDistance_m or kWrongAngle_deg
   Eigen::Isometry3d T_truth_estimate = Eigen::Isometry3d::Identity();  ///< the alignment
 };
 
-/// Throws InputError when no pose has a true one.
-PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate,
-                        const TrackFacts& facts);
+/// Drift counts, and so does a place that is wrong and kept. The truth is interpolated. Throws
+/// InputError when no pose has a true one within 0.02 s.
+PlaceErrors placeErrors(const Trajectory& truth, const Trajectory& estimate);
 
 /// Absolute error of all frames from the first pose on: a frame without a pose counts with the last
 /// one before it. Aligned as for the poses alone (`alignment`), so that holding a pose can only be

@@ -22,6 +22,14 @@ struct RunErrors {
   ErrorStatistics held_m;  ///< heldError(): all frames, those without a pose with the last one
   std::size_t wrong = 0;   ///< wrongPoses()
   RelativeError per_second;
+  std::size_t false_count = 0;  ///< of placeErrors()
+};
+
+/// Of the poses as told at the time: what a robot acted on.
+struct LiveErrors {
+  ErrorStatistics ate_m;
+  std::size_t wrong = 0;
+  std::size_t false_count = 0;
 };
 
 /// Collects what a run gives, and writes it into a folder.
@@ -58,6 +66,8 @@ class RunReport {
   double framesPerSecond() const;
   /// Nothing without truth, or when fewer than three poses have a true one.
   std::optional<RunErrors> errors() const;
+  /// Nothing without truth, before setBackEnd(), or for fewer than three poses with a true one.
+  std::optional<LiveErrors> liveErrors() const;
 
   /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops) and
   /// trajectory_live.txt (as they were told at the time), in the frame that `T_world_map` leads to.
@@ -77,6 +87,7 @@ class RunReport {
 
  private:
   std::string summary(std::size_t surfels) const;
+  std::string errorLines() const;
 
   Config config_;
   RunStatistics statistics_;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/evaluation/nees.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "posefusion/evaluation/metrics.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::int64_t kMotion_ns = 1'000'000'000;
+constexpr std::int64_t kLongestMotion_ns = 1'200'000'000;
+/// Half of all normal errors are within so many standard deviations.
+constexpr double kMedianOfNormal = 0.67449;
+constexpr double kOutside = 0.025;  ///< on either side
+
+struct KnownPose {
+  UncertainPose estimate;
+  Eigen::Isometry3d T_world_camera;  ///< the truth
+};
+
+std::vector<KnownPose> withTruth(const Trajectory& truth, const std::vector<UncertainPose>& poses) {
+  std::vector<KnownPose> known;
+  for (const UncertainPose& pose : poses) {
+    if (const auto T = truePoseAt(truth, pose.stamp_ns)) known.push_back({pose, *T});
+  }
+  return known;
+}
+
+struct MotionError {
+  double nees = 0.0;
+  Vector6d sigmas = Vector6d::Zero();  ///< |error| of each axis
+};
+
+MotionError errorOf(const KnownPose& from, const KnownPose& to) {
+  const Eigen::Isometry3d T_to_from = to.T_world_camera.inverse() * from.T_world_camera;
+  const Vector6d error =
+      logSe3(T_to_from * from.estimate.T_map_camera.inverse() * to.estimate.T_map_camera);
+  const Matrix6d A = adjoint(T_to_from);
+  const Matrix6d covariance = to.estimate.covariance + A * from.estimate.covariance * A.transpose();
+  const Eigen::LDLT<Matrix6d> factors(covariance);
+  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0.0)) {
+    const double all = error.isZero(0.0) ? 0.0 : std::numeric_limits<double>::infinity();
+    return {all, Vector6d::Constant(all)};
+  }
+  return {error.dot(factors.solve(error)),
+          error.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt())};
+}
+
+/// Where the motion from each pose ends; nothing where there is no pose in time.
+std::vector<std::optional<std::size_t>> endsOf(const std::vector<KnownPose>& poses) {
+  std::vector<std::optional<std::size_t>> ends(poses.size());
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::int64_t begin_ns = poses[i].estimate.stamp_ns;
+    while (end < poses.size() && poses[end].estimate.stamp_ns - begin_ns < kMotion_ns) ++end;
+    if (end == poses.size()) break;
+    if (poses[end].estimate.stamp_ns - begin_ns <= kLongestMotion_ns) ends[i] = end;
+  }
+  return ends;
+}
+
+/// Mean of the window that begins with a pose; nothing where one of its motions is missing.
+std::optional<double> windowMean(const std::vector<std::optional<std::size_t>>& ends,
+                                 const std::vector<MotionError>& errors, std::size_t begin,
+                                 std::size_t per_window) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < per_window; ++n) {
+    if (begin >= ends.size() || !ends[begin]) return std::nullopt;
+    sum += errors[begin].nees;
+    begin = *ends[begin] + 1;
+  }
+  return sum / static_cast<double>(per_window);
+}
+
+/// What all motions have in common, whatever their windows.
+void describe(const std::vector<MotionError>& errors,
+              const std::vector<std::optional<std::size_t>>& ends, NeesShare& share) {
+  std::vector<double> nees;
+  std::array<std::vector<double>, 6> axes;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!ends[i]) continue;
+    nees.push_back(errors[i].nees);
+    for (int axis = 0; axis < 6; ++axis) {
+      axes[static_cast<std::size_t>(axis)].push_back(errors[i].sigmas[axis]);
+    }
+  }
+  const ErrorStatistics all = statisticsOf(std::move(nees));
+  share.motions = all.count;
+  share.mean = all.mean;
+  share.median = all.median;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    share.axes[axis] = statisticsOf(std::move(axes[axis])).median / kMedianOfNormal;
+  }
+}
+
+}  // namespace
+
+double chiSquareQuantile(int freedom, double probability) {
+  // Of an even number of degrees: 1 - exp(-x / 2) sum (x / 2)^i / i!, i < freedom / 2.
+  const auto below = [&](double x) {
+    double term = std::exp(-0.5 * x), sum = term;
+    for (int i = 1; i < freedom / 2; ++i) sum += term *= 0.5 * x / i;
+    return 1.0 - sum;
+  };
+  double low = 0.0, high = 10.0 * freedom + 100.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (below(middle) < probability ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+NeesShare neesOfMotions(const Trajectory& truth, const std::vector<UncertainPose>& poses,
+                        std::size_t per_window) {
+  const std::vector<KnownPose> known = withTruth(truth, poses);
+  const auto ends = endsOf(known);
+  std::vector<MotionError> errors(known.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (ends[i]) errors[i] = errorOf(known[i], known[*ends[i]]);
+  }
+  NeesShare share;
+  describe(errors, ends, share);
+  const auto n = static_cast<double>(per_window);
+  share.low = chiSquareQuantile(6 * static_cast<int>(per_window), kOutside) / n;
+  share.high = chiSquareQuantile(6 * static_cast<int>(per_window), 1.0 - kOutside) / n;
+  std::size_t low = 0, high = 0;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto mean = windowMean(ends, errors, i, per_window);
+    if (!mean) continue;
+    ++share.windows;
+    if (*mean < share.low) ++low;
+    if (*mean > share.high) ++high;
+  }
+  if (share.windows == 0) return share;
+  const auto windows = static_cast<double>(share.windows);
+  share.too_low = static_cast<double>(low) / windows;
+  share.too_high = static_cast<double>(high) / windows;
+  share.inside = 1.0 - share.too_low - share.too_high;
+  return share;
+}
+
+}  // namespace pf

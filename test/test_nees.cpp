@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "posefusion/evaluation/nees.hpp"
+
+namespace pf {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr int kLength = 12'000;  // 400 s
+
+Vector6d sigmas() {
+  Vector6d s;
+  s << 0.001, 0.002, 0.004, 0.001, 0.0005, 0.002;
+  return s;
+}
+
+struct Walk {
+  Trajectory truth;
+  std::vector<UncertainPose> poses;
+};
+
+/// A walk whose poses are each off by normal noise of sigmas(), and said to be so by `said` *
+/// sigmas().
+Walk walk(double said) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  Vector6d step;
+  step << 0.01, 0.002, 0.02, 0.001, 0.02, 0.003;
+  Vector6d far;
+  far << 3, -5, 1, 0.3, 2, -0.4;
+  const Eigen::Isometry3d T_map_world = expSe3(far);
+  Walk walk;
+  Eigen::Isometry3d Q = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < kLength; ++i) {
+    Vector6d error;
+    for (int axis = 0; axis < 6; ++axis) error[axis] = sigmas()[axis] * normal(random);
+    const std::int64_t stamp_ns = i * 100 * kMs / 3;
+    walk.truth.push_back({stamp_ns, Q});
+    walk.poses.push_back(
+        {stamp_ns, T_map_world * Q * expSe3(error), (said * sigmas()).cwiseAbs2().asDiagonal()});
+    Q = Q * expSe3(step);
+  }
+  return walk;
+}
+
+TEST(ChiSquare, QuantilesAreThoseOfTheTables) {
+  EXPECT_NEAR(chiSquareQuantile(6, 0.025), 1.237, 0.001);
+  EXPECT_NEAR(chiSquareQuantile(6, 0.975), 14.449, 0.001);
+  EXPECT_NEAR(chiSquareQuantile(6, 0.9973), 20.062, 0.001);
+  EXPECT_NEAR(chiSquareQuantile(30, 0.025), 16.791, 0.001);
+  EXPECT_NEAR(chiSquareQuantile(30, 0.975), 46.979, 0.001);
+  EXPECT_NEAR(chiSquareQuantile(2, 0.5), 2.0 * std::log(2.0), 1e-9);
+}
+
+class Nees : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(Nees, AnHonestCovarianceIsInTheBandAsOftenAsTheBandSays) {
+  const Walk r = walk(1.0);
+  const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
+  EXPECT_NEAR(share.mean, 6.0, 0.2);
+  EXPECT_NEAR(share.median, 5.35, 0.2);
+  for (const double axis : share.axes) EXPECT_NEAR(axis, 1.0, 0.05);
+  EXPECT_NEAR(share.inside, 0.95, 0.025);
+  EXPECT_NEAR(share.too_low, 0.025, 0.02);
+  EXPECT_NEAR(share.too_high, 0.025, 0.02);
+  EXPECT_NEAR(
+      share.low,
+      chiSquareQuantile(6 * static_cast<int>(GetParam()), 0.025) / static_cast<double>(GetParam()),
+      1e-9);
+}
+
+TEST_P(Nees, HalfTheSigmasAreTooSure) {
+  const Walk r = walk(0.5);
+  const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
+  EXPECT_NEAR(share.mean, 24.0, 0.8);
+  EXPECT_LT(share.inside, GetParam() > 1 ? 0.05 : 0.35);
+  EXPECT_GT(share.too_high, 0.7);
+  EXPECT_LT(share.too_low, 0.001);
+}
+
+TEST_P(Nees, TwiceTheSigmasAreTooCautious) {
+  const Walk r = walk(2.0);
+  const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
+  EXPECT_NEAR(share.mean, 1.5, 0.05);
+  EXPECT_LT(share.inside, GetParam() > 1 ? 0.05 : 0.6);
+  EXPECT_GT(share.too_low, 0.4) << "what a check of three sigmas alone calls perfect";
+  EXPECT_EQ(share.too_high, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Windows, Nees, testing::Values(1U, 5U));
+
+TEST(NeesOfMotions, IsTheSameInAnyFrameOfTheMap) {
+  Walk r = walk(1.0);
+  const NeesShare before = neesOfMotions(r.truth, r.poses, 5);
+  Vector6d far;
+  far << -2, 1, 4, 1.3, -0.2, 0.4;
+  for (auto& pose : r.poses) pose.T_map_camera = expSe3(far) * pose.T_map_camera;
+  EXPECT_NEAR(neesOfMotions(r.truth, r.poses, 5).mean, before.mean, 1e-6);
+}
+
+TEST(NeesOfMotions, TheAxisThatIsTooSureIsNamed) {
+  Walk r = walk(1.0);
+  for (auto& pose : r.poses) pose.covariance(1, 1) /= 9.0;
+  const NeesShare share = neesOfMotions(r.truth, r.poses, 5);
+  EXPECT_GT(share.axes[1], 2.0);
+  EXPECT_NEAR(share.axes[3], 1.0, 0.05);
+  EXPECT_GT(share.too_high, 0.5);
+}
+
+TEST(NeesOfMotions, GapsBreakWindowsAndWithoutATruthThereAreNone) {
+  Walk r = walk(1.0);
+  EXPECT_EQ(neesOfMotions({}, r.poses, 1).windows, 0U);
+  EXPECT_EQ(neesOfMotions({}, r.poses, 1).inside, 0.0);
+  const NeesShare whole = neesOfMotions(r.truth, r.poses, 5);
+  EXPECT_EQ(whole.motions, static_cast<std::size_t>(kLength - 30));
+  EXPECT_EQ(whole.windows, static_cast<std::size_t>(kLength - 5 * 30 - 4));
+  r.poses.erase(r.poses.begin() + 6000, r.poses.begin() + 6060);  // two seconds
+  const NeesShare broken = neesOfMotions(r.truth, r.poses, 5);
+  EXPECT_EQ(broken.motions, whole.motions - 60 - 30);
+  EXPECT_LT(broken.windows, whole.windows - 60 - 100);
+}
+
+TEST(NeesOfMotions, NoCovarianceIsTooSure) {
+  Walk r = walk(1.0);
+  for (auto& pose : r.poses) pose.covariance.setZero();
+  EXPECT_EQ(neesOfMotions(r.truth, r.poses, 5).too_high, 1.0);
+}
+
+}  // namespace
+}  // namespace pf
