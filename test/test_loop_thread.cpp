@@ -47,7 +47,7 @@ Carried carry(const std::optional<AnswerTime>& closer) {
   config.frame.shrink = 1;
   Mapper mapper(config);
   std::optional<LoopThread> loops;
-  if (closer) loops.emplace(config.loop, config.tracking, *closer);
+  if (closer) loops.emplace(config.loop, config.tracking, DepthSensor{}, *closer);
   std::int64_t stamp_ns = 0;
   Carried carried;
   const auto see = [&](int index, bool covered) {
@@ -87,7 +87,7 @@ TEST(LoopThread, AnsweredQuestionsAreForgotten) {
   Config config;
   config.frame.shrink = 1;
   Mapper mapper(config);
-  LoopThread loops(config.loop, config.tracking, AnswerTime::after_lag);
+  LoopThread loops(config.loop, config.tracking, DepthSensor{}, AnswerTime::after_lag);
   for (int i = 0; i < kMapped; ++i) {
     mapper.process({room().frame(i).frame, cv::Mat(), {}});
     loops.serve(mapper);
@@ -109,7 +109,7 @@ TEST(LoopThread, AnswersDependOnNeitherSpeedNorThreads) {
 
 TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
   Config config;
-  LoopThread loops(config.loop, config.tracking, AnswerTime::when_ready);
+  LoopThread loops(config.loop, config.tracking, DepthSensor{}, AnswerTime::when_ready);
   Mapper mapper(config);
   loops.serve(mapper);
   mapper.process({room().frame(0).frame, {}, {}});

@@ -44,7 +44,7 @@ bool equal(const std::vector<FragmentSurfels>& a, const std::vector<FragmentSurf
 /// A mapper with its loop closer.
 struct Session {
   Mapper mapper{config()};
-  LoopThread closer{config().loop, config().tracking, AnswerTime::after_lag};
+  LoopThread closer{config().loop, config().tracking, DepthSensor{}, AnswerTime::after_lag};
 
   FrameStatus process(int index) {
     const FrameStatus status = mapper.process({room().frame(index).frame, {}, {}});

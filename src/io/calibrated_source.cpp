@@ -16,6 +16,7 @@ class CalibratedSource : public FrameSource {
   std::size_t frameCount() const override { return source_->frameCount(); }
   RecordedPeople people() override { return source_->people(); }
   Trajectory truth() override { return source_->truth(); }
+  std::string sensorKind() const override { return source_->sensorKind(); }
   InputReport report() const override { return source_->report(); }
 
   std::optional<SourceFrame> next() override {

@@ -59,18 +59,23 @@ std::optional<Eigen::Isometry3d> standing(const std::vector<Eigen::Isometry3d>& 
 
 }  // namespace
 
-LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking)
-    : config_(config), tracking_(tracking), closer_(config, tracking), verifier_(tracking) {}
+LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking,
+                       const DepthSensor& sensor)
+    : config_(config),
+      tracking_(tracking),
+      sensor_(sensor),
+      closer_(config, tracking, sensor),
+      verifier_(tracking) {}
 
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
   if (question.known) {
-    closer_ = LoopCloser(config_, tracking_);
+    closer_ = LoopCloser(config_, tracking_, sensor_);
     for (const KeyframeView& view : *question.known) closer_.addKeyframe(view);
   }
   if (!question.corrected.empty()) closer_.setPoses(question.corrected);
   if (question.keyframe) {
-    if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_);  // a new map
+    if (question.keyframe->id == 0) closer_ = LoopCloser(config_, tracking_, sensor_);  // a new map
     Stopwatch watch;
     closer_.addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();

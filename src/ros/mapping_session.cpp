@@ -21,7 +21,7 @@ pf::AnswerTime answerTime(bool lossless) {
 
 MappingSettings readMapping(Parameters& parameters) {
   MappingSettings s;
-  s.config = parameters.config({"frame", "tracking", "map", "loop", "graph"});
+  s.config = parameters.config({"sensor", "frame", "tracking", "map", "loop", "graph"});
   s.lossless = parameters.flag("lossless", false);
   s.saver = readMapSaver(parameters);
   s.saver.settings = pf::toYaml(s.config);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "simulator/depth_distortion.hpp"
 #include "simulator/random.hpp"
@@ -14,6 +13,10 @@ namespace pf::simulator {
 namespace {
 
 constexpr double kSteepest_rad = 1.53;
+
+/// Standard deviation (m) of a Kinect 1 at z (m), seen straight on: Nguyen, Izadi and Lovell 2012,
+/// equation (3) without its angular term. What is simulated; what the chain believes is its own.
+constexpr float depthSigma(float z_m) { return 0.0012F + 0.0019F * (z_m - 0.4F) * (z_m - 0.4F); }
 /// The pattern is matched in windows: errors of neighbours hang together over so many pixels.
 constexpr int kWindow_px = 4;
 

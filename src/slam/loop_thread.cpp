@@ -11,8 +11,9 @@ namespace {
 
 class ThreadResponder : public LoopResponder {
  public:
-  ThreadResponder(const LoopConfig& config, const TrackingConfig& tracking)
-      : worker_(std::make_shared<LoopWorker>(config, tracking)) {}
+  ThreadResponder(const LoopConfig& config, const TrackingConfig& tracking,
+                  const DepthSensor& sensor)
+      : worker_(std::make_shared<LoopWorker>(config, tracking, sensor)) {}
 
   void ask(LoopQuestion question) override {
     // Each question waits for the one before: the worker sees them in their order. A future holds
@@ -46,8 +47,9 @@ class ThreadResponder : public LoopResponder {
 
 }  // namespace
 
-LoopThread::LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time)
+LoopThread::LoopThread(const LoopConfig& config, const TrackingConfig& tracking,
+                       const DepthSensor& sensor, AnswerTime time)
     : LoopExchange(config.answer_lag_frames, time,
-                   std::make_unique<ThreadResponder>(config, tracking)) {}
+                   std::make_unique<ThreadResponder>(config, tracking, sensor)) {}
 
 }  // namespace pf

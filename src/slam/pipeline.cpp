@@ -13,7 +13,7 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
       detector_(std::move(detector)),
       segmenter_(config.segmentation),
       mapper_(config),
-      loop_thread_(config.loop, config.tracking, AnswerTime::after_lag) {}
+      loop_thread_(config.loop, config.tracking, depthSensorOf(config), AnswerTime::after_lag) {}
 
 SeenFrame Pipeline::see(const RgbdFrame& frame) {
   SeenFrame seen;

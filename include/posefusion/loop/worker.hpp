@@ -50,7 +50,7 @@ struct LoopAnswer {
 /// beside the mapper.
 class LoopWorker {
  public:
-  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking);
+  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor);
 
   LoopAnswer answer(const LoopQuestion& question);
 
@@ -70,6 +70,7 @@ class LoopWorker {
 
   LoopConfig config_;
   TrackingConfig tracking_;
+  DepthSensor sensor_;
   LoopCloser closer_;
   PlaceVerifier verifier_;
   LoopCounts counts_;

@@ -8,6 +8,7 @@
 #include "posefusion/blur/config.hpp"
 #include "posefusion/config/fields.hpp"
 #include "posefusion/frame/config.hpp"
+#include "posefusion/frame/sensor_config.hpp"
 #include "posefusion/graph/config.hpp"
 #include "posefusion/loop/config.hpp"
 #include "posefusion/map/config.hpp"
@@ -27,12 +28,18 @@ struct Config {
   BlurConfig blur;
   PoseConfig pose;
   SegmentationConfig segmentation;
+  SensorConfig sensor;
   FrameConfig frame;
   TrackingConfig tracking;
   MapConfig map;
   LoopConfig loop;
   GraphConfig graph;
 };
+
+/// The depth camera of the settings. Throws InputError as depthSensorOf() does.
+inline DepthSensor depthSensorOf(const Config& config) {
+  return depthSensorOf(config.sensor, config.frame);
+}
 
 /// Lists all fields in order, grouped by stage.
 void visitFields(Config& config, FieldVisitor& visitor);

@@ -8,7 +8,8 @@ namespace pf {
 /// An exchange with a loop closer that works in a thread of its own.
 class LoopThread : public LoopExchange {
  public:
-  LoopThread(const LoopConfig& config, const TrackingConfig& tracking, AnswerTime time);
+  LoopThread(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor,
+             AnswerTime time);
 };
 
 }  // namespace pf
