@@ -54,8 +54,9 @@ TEST_F(MapperTest, TheSensorOfTheSettingsIsThatOfMapTrackingAndViews) {
     Mapper mapper(stereo);
     FrameStatus status;
     for (int i = 0; i < 3; ++i) {
-      const TrueFrame truth = room().frame(i);
-      status = mapper.process({truth.frame, {}, {}});
+      StaticFrame still;
+      still.frame = room().frame(i).frame;
+      status = mapper.process(still);
     }
     EXPECT_EQ(mapper.map().sensor().kind, depthSensorOf(stereo).kind);
     EXPECT_EQ(status.outcome, FrameOutcome::fused);

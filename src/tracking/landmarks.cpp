@@ -7,10 +7,11 @@
 namespace pf {
 namespace {
 
-constexpr int kReach_px = 2;   // depth is the mean of 5x5 pixels ...
-constexpr int kMinDepths = 3;  // ... of which so many must be there
-// A corner that is elsewhere by more than this in some frames moves by itself.
-constexpr double kMissed_px = 3.0;
+// Depth around a corner is the mean of what lies so many pixels of its flow around it, of which
+// this share must be there.
+constexpr double kReach_flow_px = 1.0, kMinDepths = 0.12;
+// A corner that is elsewhere by more than this (pixels of its flow) in some frames moves by itself.
+constexpr double kMissed_flow_px = 1.5;
 constexpr float kMissedSigmas = 5.0F;
 constexpr int kMostMisses = 3;
 // The mean forgets what is older than about so many frames: the place follows the map as fusion
@@ -22,7 +23,7 @@ bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
             const DepthPicture& seen) {
   if (expected.z() < 0.1) return false;
   const Eigen::Vector2d error = seen.camera.project(expected) - Eigen::Vector2d(pixel.x, pixel.y);
-  return error.norm() < kMissed_px &&
+  return error.norm() < kMissed_flow_px * flowPixel(seen.camera.width) &&
          std::abs(expected.z() - z) < seen.sensor.tolerance(static_cast<float>(z), kMissedSigmas);
 }
 
@@ -30,10 +31,9 @@ bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
 
 double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel) {
   const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
-  const int first_u = std::max(0, u - kReach_px),
-            last_u = std::min(depth_m.cols - 1, u + kReach_px);
-  const int first_v = std::max(0, v - kReach_px),
-            last_v = std::min(depth_m.rows - 1, v + kReach_px);
+  const int reach = static_cast<int>(std::lround(kReach_flow_px * flowPixel(depth_m.cols)));
+  const int first_u = std::max(0, u - reach), last_u = std::min(depth_m.cols - 1, u + reach);
+  const int first_v = std::max(0, v - reach), last_v = std::min(depth_m.rows - 1, v + reach);
   float least = 1e9F, most = 0.0F, sum = 0.0F;
   int count = 0;
   for (int row = first_v; row <= last_v; ++row) {
@@ -47,7 +47,8 @@ double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv
       ++count;
     }
   }
-  if (count < kMinDepths || most - least > sensor.tolerance(least, 4.0F)) return 0.0;
+  const int side = 2 * reach + 1;
+  if (count < kMinDepths * side * side || most - least > sensor.tolerance(least, 4.0F)) return 0.0;
   return static_cast<double>(static_cast<float>(count) / sum);
 }
 

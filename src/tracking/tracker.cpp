@@ -19,12 +19,15 @@ constexpr int kMaxHalvings = 3;
 constexpr double kCostNoise = 0.01;
 // Residuals of so many standard deviations keep a quarter of their weight on the finest level.
 constexpr float kRobustScale = 3.0F;
-// Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
-// map's ripples): so many pixels of the finest level say as much as one independent measurement.
-constexpr double kPixelsPerMeasurement = 600.0;
+// Residuals of what is seen close together, and of one frame, go together (the sensor's distortion,
+// the map's ripples): so large a part of what is seen (sr) says as much as one independent
+// measurement, in however many pixels. 600 of them in a Kinect's picture at half its size.
+constexpr double kHalfKinectFocal_px = 262.5;
+constexpr double kMeasurement_sr = 600.0 / (kHalfKinectFocal_px * kHalfKinectFocal_px);
 // Error of a normal (rad) per relative error of depth: a normal comes from some pixels'
 // differences. Directions with less information than its square times that of the best-known one
-// are fixed by noise alone.
+// are fixed by noise alone. The same for pictures of any size: scaled by the angle of a pixel it
+// found free directions at 1280 pixels across where there were none at 320 and 640.
 constexpr double kNormalNoise = 14.0;
 // Without a measured prior there is nothing better to decide: only what is plainly free counts as
 // free.
@@ -217,11 +220,13 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
                     start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm,
                     start.prior.is_measured ? kNormalNoise : kBlindNormalNoise, frame.sensor};
+  const PinholeCamera& finest = frame.levels[0].camera;
+  const double pixels_per_measurement = kMeasurement_sr * finest.fx * finest.fy;
   double share = 1.0;
   for (int i = kLevels - 1; i >= 0; --i) {
     // Coarse levels start further away: what is an outlier there may be an inlier later.
     a.settings.robust_scale = kRobustScale * static_cast<float>(1 << i);
-    share = static_cast<double>(1 << (2 * i)) / kPixelsPerMeasurement;
+    share = static_cast<double>(1 << (2 * i)) / pixels_per_measurement;
     alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
   return resultOf(a, share, prior, start.T_map_view);
