@@ -8,7 +8,7 @@
 
 #include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/calibration/view_surface.hpp"
-#include "posefusion/core/noise.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/se3.hpp"
 
 /// A room of 6 x 5 x 2.6 m with three boxes in it, seen by a camera whose depth is wrong by a known
@@ -106,7 +106,7 @@ inline CalibrationView roomView(const RoomView& wanted) {
       double z = leaves(room, T.translation(), ray);
       for (const RoomBox& box : boxes) z = std::min(z, enters(box, T.translation(), ray));
       z = wanted.field.inverse().corrected(z, (u + 0.5) / camera.width, (v + 0.5) / camera.height);
-      z += 0.5 * wanted.noise * depthSigma(static_cast<float>(z)) * normal(luck);
+      z += 0.5 * wanted.noise * DepthSensor{}.sigma(static_cast<float>(z)) * normal(luck);
       view.depth_mm.at<std::uint16_t>(v, u) =
           z < 5.0 ? static_cast<std::uint16_t>(std::lround(1000.0 * z)) : 0;
     }

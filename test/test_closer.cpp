@@ -30,7 +30,7 @@ Eigen::Isometry3d poseOf(int view) { return room().pose(view * kStep); }
 
 KeyframePicture pictureOf(int view) {
   KeyframePicture picture;
-  picture.assign(keyframeView(frameOf(view), view, {0, poseOf(view)}, true));
+  picture.assign(keyframeView(frameOf(view), view, {0, poseOf(view)}, true), DepthSensor{});
   return picture;
 }
 
@@ -68,8 +68,39 @@ TEST(KeyframePair, AlignsToTheTruth) {
   EXPECT_LT(logSo3(off.linear()).norm(), 0.02);
 }
 
+TEST(KeyframePicture, KeepsTheDepthThatIsUsed) {
+  KeyframeView view = keyframeView(frameOf(0), 0, {}, true);
+  view.depth_mm.setTo(7000);
+  const auto seenWith = [&](double max_depth_m) {
+    DepthSensor sensor;
+    sensor.max_depth_m = max_depth_m;
+    KeyframePicture picture;
+    picture.assign(view, sensor);
+    return picture.frame.valid_pixels;
+  };
+  EXPECT_EQ(seenWith(5.0), 0);
+  EXPECT_EQ(seenWith(9.0), static_cast<int>(view.depth_mm.total()));
+}
+
+TEST(LoopCloser, FernsTellDepthsApartInTheWholeRange) {
+  LoopConfig config = quick();
+  const auto unlike = [&](double max_depth_m, double z_m) {
+    DepthSensor sensor;
+    sensor.max_depth_m = max_depth_m;
+    LoopCloser closer(config, TrackingConfig{}, sensor);
+    KeyframeView view = keyframeView(frameOf(0), 0, {}, true);
+    const auto codeAt = [&](double depth_m) {
+      view.thumbnail.depth_m.setTo(depth_m);
+      return closer.ferns().encode(view.thumbnail);
+    };
+    return FernDatabase::dissimilarity(codeAt(z_m), codeAt(z_m + 1.5));
+  };
+  EXPECT_EQ(unlike(5.0, 6.0), 0.0);
+  EXPECT_GT(unlike(9.0, 6.0), 0.1);
+}
+
 TEST(LoopCloser, ComingBackGivesTrueConstraints) {
-  LoopCloser closer(quick(), TrackingConfig{});
+  LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
   Vector6d drift;
   drift << 0.1, 0.05, -0.08, 0.05, 0.08, 0.02;
   const auto loops = comeBack(closer, expSe3(drift));
@@ -91,7 +122,7 @@ TEST(LoopCloser, ComingBackGivesTrueConstraints) {
 }
 
 TEST(LoopCloser, FarByItsPoseAPlaceIsFoundByItsPicture) {
-  LoopCloser closer(quick(), TrackingConfig{});
+  LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
   Eigen::Isometry3d drift = Eigen::Isometry3d::Identity();
   drift.translation().x() = 2 * quick().near_m;
   const auto loops = comeBack(closer, drift);
@@ -105,7 +136,7 @@ TEST(LoopCloser, FarByItsPoseAPlaceIsFoundByItsPicture) {
 TEST(LoopCloser, ComparesNoMoreThanIsEnough) {
   LoopConfig config = quick();
   config.enough_loops = 1;
-  LoopCloser closer(config, TrackingConfig{});
+  LoopCloser closer(config, TrackingConfig{}, DepthSensor{});
   const auto loops = comeBack(closer, Eigen::Isometry3d::Identity());
   ASSERT_EQ(loops.size(), 1U);
   EXPECT_EQ(loops[0].from, 0) << "the nearest is the same picture";
@@ -115,7 +146,7 @@ TEST(LoopCloser, ComparesNoMoreThanIsEnough) {
 TEST(LoopCloser, PosesInOtherFragmentsAreNotNear) {
   // The coordinates say the same place; only the pictures may tell that it is.
   for (const int fragment : {0, 1}) {
-    LoopCloser closer(quick(), TrackingConfig{});
+    LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
     for (int i = 0; i < kViews; ++i) {
       closer.addKeyframe(keyframeView(frameOf(i), i, {0, poseOf(i)}, true));
     }
@@ -137,7 +168,7 @@ TEST(LoopCloser, PicturesThatLookDifferentWaysAreNotJoined) {
   // without an error, but every surface is at another place of the picture.
   const double turn_rad = 0.35;
   const WorkingFrame frame = frameOf(0);
-  LoopCloser closer(quick(), TrackingConfig{});
+  LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
   for (int i = 0; i < 3; ++i) closer.addKeyframe(keyframeView(frame, i, {0, poseOf(0)}, true));
   Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
   turned.rotate(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
@@ -159,7 +190,7 @@ TEST(LoopCloser, PicturesThatLookDifferentWaysAreNotJoined) {
 TEST(LoopCloser, TheLastKeyframesAreNoLoop) {
   LoopConfig config;
   config.min_gap_keyframes = kViews + 1;
-  LoopCloser closer(config, TrackingConfig{});
+  LoopCloser closer(config, TrackingConfig{}, DepthSensor{});
   EXPECT_TRUE(comeBack(closer, Eigen::Isometry3d::Identity()).empty());
   EXPECT_EQ(closer.counts().compared, 0U);
 }
@@ -168,7 +199,7 @@ TEST(LoopCloser, FernsAreStoredByTheStaticViewRule) {
   for (const bool rule : {true, false}) {
     LoopConfig config = quick();
     config.static_view_rule = rule;
-    LoopCloser closer(config, TrackingConfig{});
+    LoopCloser closer(config, TrackingConfig{}, DepthSensor{});
     closer.addKeyframe(keyframeView(frameOf(0), 0, {0, poseOf(0)}, false));
     EXPECT_EQ(closer.counts().ferns, rule ? 0U : 1U);
     EXPECT_EQ(closer.counts().not_static, rule ? 1U : 0U);
@@ -178,7 +209,7 @@ TEST(LoopCloser, FernsAreStoredByTheStaticViewRule) {
 }
 
 TEST(LoopCloser, RefusesWhatDoesNotFollow) {
-  LoopCloser closer(quick(), TrackingConfig{});
+  LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
   closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true));
   EXPECT_THROW(closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true)), InputError);
   EXPECT_THROW(closer.setPoses({}), InputError);

@@ -56,8 +56,7 @@ TEST(Config, ErrorsNameTheKeyTheValueAndWhatWasExpected) {
   EXPECT_EQ(assignmentError("trackin.max_distance_m=1"),
             "setting: trackin is unknown, expected one of blur, calibration, frame, graph, loop, "
             "map, pose, "
-            "segmentation, "
-            "tracking");
+            "segmentation, sensor, tracking");
   EXPECT_EQ(assignmentError("tracking.max_distance_m=near"),
             "setting: tracking.max_distance_m is 'near', expected a number");
   EXPECT_EQ(assignmentError("tracking.max_distance_m=-1"),

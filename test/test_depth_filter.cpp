@@ -9,6 +9,8 @@
 namespace pf {
 namespace {
 
+const DepthSensor kKinect;
+
 PinholeCamera smallCamera() {
   PinholeCamera camera;
   camera.width = 80;
@@ -46,7 +48,7 @@ TEST(SmoothDepth, LeavesALeaningPlaneWhereItIs) {
   const PinholeCamera camera = smallCamera();
   const cv::Mat depth = planeDepth(camera, Eigen::Vector3d(0.1, 0.5, 0.6).normalized(), 1.5);
   cv::Mat smooth;
-  smoothDepth(depth, smooth);
+  smoothDepth(depth, kKinect, smooth);
   EXPECT_LT(largestDifference(depth, smooth, {5, 5, 70, 50}), 1e-4);
 }
 
@@ -57,7 +59,7 @@ TEST(SmoothDepth, LowersNoiseAndKeepsSteps) {
   cv::RNG random(5);
   random.fill(noise, cv::RNG::NORMAL, 0.0, 0.002);
   cv::Mat smooth;
-  smoothDepth(depth + noise, smooth);
+  smoothDepth(depth + noise, kKinect, smooth);
   cv::Scalar mean, before, after;
   cv::meanStdDev((depth + noise)(cv::Rect(5, 5, 30, 50)), mean, before);
   cv::meanStdDev(smooth(cv::Rect(5, 5, 30, 50)), mean, after);
@@ -68,14 +70,14 @@ TEST(SmoothDepth, LowersNoiseAndKeepsSteps) {
 TEST(SmoothDepth, KeepsHolesAndFillsNone) {
   const cv::Mat depth = noisyDepth(48, 64);
   cv::Mat smooth;
-  smoothDepth(depth, smooth);
+  smoothDepth(depth, kKinect, smooth);
   EXPECT_EQ(cv::countNonZero((depth > 0) != (smooth > 0)), 0);
 }
 
 TEST(ShrinkDepth, TakesTheNearestSurfaceOfABlock) {
   cv::Mat depth = (cv::Mat_<float>(2, 4) << 1.0F, 2.0F, 0.0F, 3.0F, 1.002F, 2.0F, 3.0F, 0.0F);
   cv::Mat small;
-  shrinkDepth(depth, 2, small);
+  shrinkDepth(depth, 2, kKinect, small);
   ASSERT_EQ(small.size(), cv::Size(2, 1));
   EXPECT_NEAR(small.at<float>(0, 0), 1.001, 1e-5);
   EXPECT_NEAR(small.at<float>(0, 1), 3.0, 1e-5);
@@ -87,7 +89,7 @@ TEST(ShrinkDepth, OfAPlaneIsThePlaneOfTheShrunkCamera) {
   // blocks of 4 pixels to lie on one surface by the sensor's noise
   for (const int factor : {2, 4}) {
     cv::Mat small;
-    shrinkDepth(planeDepth(camera, n, 2.0), factor, small);
+    shrinkDepth(planeDepth(camera, n, 2.0), factor, kKinect, small);
     const cv::Mat expected = planeDepth(camera.shrunk(factor), n, 2.0);
     EXPECT_LT(cv::norm(small, expected, cv::NORM_INF), 1e-4) << "factor " << factor;
   }
@@ -95,7 +97,7 @@ TEST(ShrinkDepth, OfAPlaneIsThePlaneOfTheShrunkCamera) {
 
 TEST(ShrinkDepth, OfNothingIsNothing) {
   cv::Mat small;
-  shrinkDepth(cv::Mat::zeros(6, 9, CV_32FC1), 3, small);
+  shrinkDepth(cv::Mat::zeros(6, 9, CV_32FC1), 3, kKinect, small);
   EXPECT_EQ(cv::countNonZero(small), 0);
   EXPECT_EQ(small.size(), cv::Size(3, 2));
 }
@@ -104,7 +106,7 @@ TEST(ComputeNormals, OfAPlaneIsItsNormalTowardsTheCamera) {
   const PinholeCamera camera = smallCamera();
   const Eigen::Vector3d n = Eigen::Vector3d(0.3, 0.4, 0.8).normalized();
   cv::Mat x, y, z;
-  computeNormals(planeDepth(camera, n, 1.0), camera, x, y, z);
+  computeNormals(planeDepth(camera, n, 1.0), camera, kKinect, x, y, z);
   const cv::Rect inner(1, 1, camera.width - 2, camera.height - 2);
   EXPECT_LT(cv::norm(x(inner), cv::Mat(inner.size(), CV_32FC1, -n.x()), cv::NORM_INF), 1e-3);
   EXPECT_LT(cv::norm(y(inner), cv::Mat(inner.size(), CV_32FC1, -n.y()), cv::NORM_INF), 1e-3);
@@ -117,7 +119,7 @@ TEST(ComputeNormals, AreMissingAtStepsHolesAndBorders) {
   depth.colRange(40, 80).setTo(2.0);
   depth.at<float>(20, 20) = 0;
   cv::Mat x, y, z;
-  computeNormals(depth, camera, x, y, z);
+  computeNormals(depth, camera, kKinect, x, y, z);
   EXPECT_EQ(z.at<float>(30, 39), 0);
   EXPECT_EQ(z.at<float>(30, 40), 0);
   EXPECT_EQ(z.at<float>(20, 21), 0);
@@ -130,8 +132,8 @@ TEST(DepthFilter, GivesTheSameBitsForAnyNumberOfThreads) {
   cv::Mat smooth[2], small[2];
   for (int i = 0; i < 2; ++i) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, i == 0 ? 1 : 4);
-    smoothDepth(depth, smooth[i]);
-    shrinkDepth(depth, 2, small[i]);
+    smoothDepth(depth, kKinect, smooth[i]);
+    shrinkDepth(depth, 2, kKinect, small[i]);
   }
   EXPECT_EQ(cv::norm(smooth[0], smooth[1], cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(small[0], small[1], cv::NORM_INF), 0);

@@ -15,6 +15,7 @@ namespace pf {
 namespace {
 
 constexpr int kLast = 15;
+const DepthSensor kKinect;
 
 const SimulatedSequence& room() {
   static const SimulatedSequence sequence("empty_box", kLast + 1);
@@ -31,7 +32,7 @@ Features featuresOf(int index) {
 }
 
 TEST(Features, FindTheMotionBetweenTwoViews) {
-  const FeatureMatch match = matchFeatures(featuresOf(0), featuresOf(kLast));
+  const FeatureMatch match = matchFeatures(featuresOf(0), featuresOf(kLast), kKinect);
   ASSERT_TRUE(match.found);
   EXPECT_LE(match.inliers, match.matches);
   const Eigen::Isometry3d off =
@@ -42,7 +43,7 @@ TEST(Features, FindTheMotionBetweenTwoViews) {
 
 TEST(Features, TheWayBackIsTheInverse) {
   const Features a = featuresOf(0), b = featuresOf(kLast);
-  const FeatureMatch forth = matchFeatures(a, b), back = matchFeatures(b, a);
+  const FeatureMatch forth = matchFeatures(a, b, kKinect), back = matchFeatures(b, a, kKinect);
   ASSERT_TRUE(forth.found && back.found);
   EXPECT_LT((forth.T_first_second * back.T_first_second).translation().norm(), 0.03);
 }
@@ -54,13 +55,13 @@ TEST(Features, AreOnlyWhereThereIsDepth) {
   image.depth_m = cv::Mat::zeros(image.intensity.size(), CV_32FC1);
   image.camera = truth.frame.camera;
   EXPECT_EQ(findFeatures(image).size(), 0U);
-  EXPECT_FALSE(matchFeatures(findFeatures(image), featuresOf(0)).found);
+  EXPECT_FALSE(matchFeatures(findFeatures(image), featuresOf(0), kKinect).found);
 }
 
 TEST(Features, UnrelatedOnesDoNotMatch) {
   Features shuffled = featuresOf(0);
   std::reverse(shuffled.points.begin(), shuffled.points.end());
-  const FeatureMatch match = matchFeatures(featuresOf(0), shuffled);
+  const FeatureMatch match = matchFeatures(featuresOf(0), shuffled, kKinect);
   EXPECT_GT(match.matches, 12);
   EXPECT_FALSE(match.found);
 }

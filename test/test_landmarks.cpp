@@ -55,7 +55,7 @@ class LandmarksTest : public ::testing::Test {
   }
 
   void update(const SparseFlow& flow, int frame, bool believed = true) {
-    landmarks_.update(flow, depth_m_, camera_, poseAt(frame), believed);
+    landmarks_.update(flow, {depth_m_, camera_}, poseAt(frame), believed);
   }
 
   std::mt19937 random_{5};
@@ -88,9 +88,9 @@ TEST_F(LandmarksTest, SomebodyWhoWalksIsFoundOut) {
 TEST_F(LandmarksTest, AFrameThatIsNotBelievedMovesNone) {
   update(flowTo(1, 0, 0.0), 1);
   const Eigen::Vector3d before = landmarks_.find(10)->at;
-  landmarks_.update(flowTo(2, 0, 0.0), depth_m_, camera_, poseAt(9), false);
+  landmarks_.update(flowTo(2, 0, 0.0), {depth_m_, camera_}, poseAt(9), false);
   EXPECT_EQ(landmarks_.find(10)->at, before);
-  landmarks_.update(flowTo(3, 0, 0.0), depth_m_, camera_, poseAt(4), true);
+  landmarks_.update(flowTo(3, 0, 0.0), {depth_m_, camera_}, poseAt(4), true);
   EXPECT_NE(landmarks_.find(10)->at, before);
 }
 
@@ -125,7 +125,7 @@ TEST_F(LandmarksTest, HoldAMotionThatDriftsFromFrameToFrame) {
     const SparseFlow flow = flowTo(k, 0, 0.4);
     held = step(flow, &landmarks_, held);
     alone = step(flow, nullptr, alone);
-    landmarks_.update(flow, depth_m_, camera_, held, true);
+    landmarks_.update(flow, {depth_m_, camera_}, held, true);
     drift_held = std::max(drift_held, (held.translation() - poseAt(k).translation()).norm());
     drift_alone = std::max(drift_alone, (alone.translation() - poseAt(k).translation()).norm());
   }

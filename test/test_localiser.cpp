@@ -136,7 +136,7 @@ class LocaliserStepTest : public MapperTest {
     const WorkingFrame& frame = frameAt(kFirst + kStep);
     MapRenderers render;
     render.model = [this](const Eigen::Isometry3d& T) {
-      points_.assign(viewFrom(T));
+      points_.assign(viewFrom(T), frame_.sensor);
       return RenderedModel{points_, T};
     };
     render.view = [this, shows](const Eigen::Isometry3d& T) -> const ModelView& {
@@ -252,7 +252,7 @@ class LocaliserGapTest : public ::testing::Test {
     }
     flow.after = flow.before;
     SurfelRenderer().render(map_, frame_.camera, kIdentity, {}, view_);
-    points_.assign(view_);
+    points_.assign(view_, frame_.sensor);
     return localiser_.locate(frame_, flow.to_ns, flow, false, view_,
                              {[&](const Eigen::Isometry3d&) {
                                 return RenderedModel{points_, kIdentity};

@@ -47,6 +47,26 @@ TEST_F(MapperTest, CovarianceIsPositiveAndSmallInARoom) {
   }
 }
 
+TEST_F(MapperTest, TheSensorOfTheSettingsIsThatOfMapTrackingAndViews) {
+  const auto tracked = [](const char* kind) {
+    Config stereo = config();
+    stereo.sensor.kind = kind;
+    Mapper mapper(stereo);
+    FrameStatus status;
+    for (int i = 0; i < 3; ++i) {
+      StaticFrame still;
+      still.frame = room().frame(i).frame;
+      status = mapper.process(still);
+    }
+    EXPECT_EQ(mapper.map().sensor().kind, depthSensorOf(stereo).kind);
+    EXPECT_EQ(status.outcome, FrameOutcome::fused);
+    return status.tracking.covariance.trace();
+  };
+  const double kinect = tracked("auto");
+  EXPECT_EQ(tracked("structured_light"), kinect);
+  EXPECT_GT(tracked("active_stereo"), 1.5 * kinect) << "it is believed less";
+}
+
 TEST_F(MapperTest, AGapBetweenPeopleIsNotEnoughToTrackBy) {
   for (const auto& [width, outcome] :
        {std::pair{22, FrameOutcome::no_depth}, std::pair{140, FrameOutcome::fused}}) {

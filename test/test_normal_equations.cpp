@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
@@ -35,7 +34,8 @@ struct Scene {
             static_cast<float>(120 + 60 * std::sin(0.11 * u + 0.05 * v) + 30 * std::cos(0.1 * v));
       }
     }
-    computeNormals(frame.depth_m, camera, frame.normal_x, frame.normal_y, frame.normal_z);
+    computeNormals(frame.depth_m, camera, DepthSensor{}, frame.normal_x, frame.normal_y,
+                   frame.normal_z);
     ModelPlanes planes;
     planes.depth_m = frame.depth_m;
     planes.normal[0] = frame.normal_x;
@@ -89,7 +89,7 @@ Reference plainSums(const Scene& scene, const Eigen::Isometry3d& T, const TermSe
     if (d.norm() >= s.max_distance_m) continue;
     const Eigen::Vector3d fn(f.normal_x.at<float>(v, u), f.normal_y.at<float>(v, u),
                              f.normal_z.at<float>(v, u));
-    const double sigma = depthSigma(static_cast<float>(depth));
+    const double sigma = DepthSensor{}.sigma(static_cast<float>(depth));
     if (n.dot(fn) > s.min_normal_cosine) {
       const double r = n.dot(d);
       if (std::abs(r) < 3.0 * sigma) ++sums.inliers;

@@ -193,7 +193,7 @@ TEST(LoopWorker, FindsACameraThatWasLastSeenFallingOnItsBack) {
   question.known = {view};
   question.place = std::make_shared<const PlaceQuestion>(
       PlaceQuestion{room().frame(11), std::make_shared<const SurfelMap>(room().map), {0, last}});
-  LoopWorker worker{LoopConfig{}, TrackingConfig{}};
+  LoopWorker worker{LoopConfig{}, TrackingConfig{}, DepthSensor{}};
   const LoopAnswer answer = worker.answer(question);
   ASSERT_TRUE(answer.place);
   EXPECT_LT(metresOff(answer.place->alignment.T_map_camera, truth), 0.03);
@@ -217,7 +217,7 @@ TEST(LoopWorker, LooksInEachFragmentByItself) {
   map->add(wall, 0);
   LoopQuestion question;
   PlaceQuestion place{room().frame(11), map, {0, room().sequence.pose(8)}};
-  LoopWorker worker{LoopConfig{}, TrackingConfig{}};
+  LoopWorker worker{LoopConfig{}, TrackingConfig{}, DepthSensor{}};
   question.place = std::make_shared<const PlaceQuestion>(place);
   EXPECT_FALSE(worker.answer(question).place) << "it is not in the fragment of the last pose";
   place.elsewhere.push_back({2, room().sequence.pose(8)});

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "posefusion/core/error.hpp"
 #include "posefusion/io/camera_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/images.hpp"
 #include "posefusion/io/tum_writer.hpp"
+#include "posefusion/run/run.hpp"
 #include "temporary_folder.hpp"
 #include "test_data.hpp"
 
@@ -128,6 +130,31 @@ TEST_F(TumFolderTest, DepthUnitAndDistortionComeFromTheCameraFile) {
   const auto frame = readAll()[0].frame;
   EXPECT_DOUBLE_EQ(frame.depth_unit_m, 1.0 / 5000);
   EXPECT_EQ(frame.camera.distortion, (std::array<double, 8>{0.1, 0, 0, -0.01}));
+}
+
+TEST_F(TumFolderTest, TheCameraFileSaysWhatTakesTheDepth) {
+  const std::string camera =
+      "width: 64\nheight: 48\nfx: 60\nfy: 61\ncx: 31.5\ncy: 23.5\ndepth_factor: 5000\n";
+  const auto sourceOf = [&](const std::string& more) {
+    root.write("sequence/camera.yaml", camera + more);
+    return openTumFolder(root / "sequence");
+  };
+  EXPECT_EQ(sourceOf("")->sensorKind(), "");
+  const auto flight = sourceOf("sensor: time_of_flight\n");
+  EXPECT_EQ(flight->sensorKind(), "time_of_flight");
+  Config config;
+  EXPECT_EQ(configFor(config, *sourceOf("")).sensor.kind, "auto");
+  EXPECT_EQ(configFor(config, *flight).sensor.kind, "time_of_flight");
+  config.sensor.kind = "structured_light";
+  EXPECT_EQ(configFor(config, *flight).sensor.kind, "structured_light") << "what is set holds";
+  try {
+    sourceOf("sensor: lidar\n");
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), (root / "sequence/camera.yaml") +
+                                ": sensor is 'lidar', expected one of structured_light, "
+                                "time_of_flight, active_stereo");
+  }
 }
 
 TEST_F(TumFolderTest, ADamagedImageIsADefectOfItsFrameAlone) {
@@ -277,6 +304,9 @@ TEST(CameraFile, SavedFileReadsBackAsTheSame) {
   expectSame();
   file.camera.distortion = {};
   expectSame();
+  file.sensor_kind = "active_stereo";
+  expectSame();
+  EXPECT_EQ(loadCamera(folder / "c.yaml").sensor_kind, "active_stereo");
 }
 
 TEST(CameraFile, TheLensModelSaysWhatTheCoefficientsAre) {

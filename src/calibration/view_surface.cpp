@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "posefusion/core/noise.hpp"
-
 namespace pf {
 namespace {
 
@@ -56,10 +54,13 @@ std::optional<PlaneFit> solve(const PlaneSums& s) {
 }
 
 /// Standard deviation (1/m) of inverse depth of one measurement.
-double inverseSigma(double w) { return depthSigma(static_cast<float>(1.0 / w)) * w * w; }
+double inverseSigma(const DepthSensor& sensor, double w) {
+  return sensor.sigma(static_cast<float>(1.0 / w)) * w * w;
+}
 
-std::optional<SurfacePatch> fitPatch(const cv::Mat& depth_mm, const PinholeCamera& camera, int u,
-                                     int v, int radius) {
+std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, int radius) {
+  const cv::Mat& depth_mm = view.depth_mm;
+  const PinholeCamera& camera = view.camera;
   if (depth_mm.at<std::uint16_t>(v, u) == 0) return std::nullopt;
   PlaneSums sums;
   for (int dv = -radius; dv <= radius; ++dv) {
@@ -72,7 +73,7 @@ std::optional<SurfacePatch> fitPatch(const cv::Mat& depth_mm, const PinholeCamer
   if (sums.n < kLeastFilled * whole) return std::nullopt;
   const auto fit = solve(sums);
   if (!fit || !(fit->plane[0] > 0) || fit->plane[0] > 1.0 / kNearest_m) return std::nullopt;
-  const double sigma = inverseSigma(fit->plane[0]);
+  const double sigma = inverseSigma(view.sensor, fit->plane[0]);
   if (fit->variance > sigma * sigma) return std::nullopt;  // an edge, or no plane
   SurfacePatch patch;
   patch.u = static_cast<float>(u);
@@ -108,8 +109,7 @@ ViewSurface::ViewSurface(const CalibrationView& view)
   if (depth.cols < 2 * radius_ + 1 || depth.rows < 2 * radius_ + 1) columns_ = rows_ = 0;
   for (int row = 0; row < rows_; ++row) {
     for (int col = 0; col < columns_; ++col) {
-      const auto patch =
-          fitPatch(depth, camera_, radius_ + col * step_, radius_ + row * step_, radius_);
+      const auto patch = fitPatch(view, radius_ + col * step_, radius_ + row * step_, radius_);
       index_.push_back(patch ? static_cast<int>(patches_.size()) : -1);
       if (patch) patches_.push_back(*patch);
     }

@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
 namespace {
 
 constexpr int kShrink = 4;  // a share needs no more
-constexpr double kMaxDepth_m = 5.0;
 constexpr float kTolerance_m = 0.05F, kSigmas = 3.0F;
 
 }  // namespace
 
 double ViewOverlap::of(const RgbdFrame& frame, const Eigen::Isometry3d& T_map_camera) {
-  depthInMetres(frame, 0.0, kMaxDepth_m, depth_m_);
-  shrinkDepth(depth_m_, kShrink, small_m_);
+  const DepthSensor& sensor = map_.sensor();
+  depthInMetres(frame, 0.0, sensor.max_depth_m, depth_m_);
+  shrinkDepth(depth_m_, kShrink, sensor, small_m_);
   RenderOptions options;
   options.only_stable = true;
   options.age = SurfelAge::all;
@@ -29,7 +28,7 @@ double ViewOverlap::of(const RgbdFrame& frame, const Eigen::Isometry3d& T_map_ca
       const float seen = small_m_.at<float>(v, u), mapped = view_.depth_m.at<float>(v, u);
       if (seen <= 0) continue;
       ++valid;
-      const float tolerance = kTolerance_m + kSigmas * depthSigma(seen);
+      const float tolerance = kTolerance_m + kSigmas * sensor.sigma(seen);
       known += mapped > 0 && std::abs(seen - mapped) < tolerance ? 1 : 0;
     }
   }

@@ -6,7 +6,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -18,7 +17,9 @@ constexpr float kSpatialSigma_px = 2.25F;
 
 /// Pixels whose depths differ by less belong to one surface (a slope of 45 degrees over a few
 /// pixels is still one).
-inline float surfaceTolerance(float z) { return pf::surfaceTolerance(z, 4.0F); }
+inline float surfaceTolerance(const DepthSensor& sensor, float z) {
+  return sensor.tolerance(z, 4.0F);
+}
 
 template <typename RowBody>
 void forRows(int rows, const RowBody& body) {
@@ -29,7 +30,7 @@ void forRows(int rows, const RowBody& body) {
 
 /// 2x2 blocks, the usual case, without branches.
 POSEFUSION_SIMD_CLONES
-void halveRow(const float* row0, const float* row1, float* out, int width) {
+void halveRow(const float* row0, const float* row1, DepthSensor sensor, float* out, int width) {
   constexpr float kFar = 1e9F;
   for (int u = 0; u < width; ++u) {
     const float a = row0[2 * u], b = row0[2 * u + 1], c = row1[2 * u], d = row1[2 * u + 1];
@@ -37,7 +38,7 @@ void halveRow(const float* row0, const float* row1, float* out, int width) {
     const float fc = c > 0 ? c : kFar, fd = d > 0 ? d : kFar;
     const float ab = fa < fb ? fa : fb, cd = fc < fd ? fc : fd;
     const float nearest = ab < cd ? ab : cd;
-    const float limit = nearest + surfaceTolerance(nearest);
+    const float limit = nearest + surfaceTolerance(sensor, nearest);
     const float wa = fa <= limit && fa < kFar ? 1.0F : 0.0F;
     const float wb = fb <= limit && fb < kFar ? 1.0F : 0.0F;
     const float wc = fc <= limit && fc < kFar ? 1.0F : 0.0F;
@@ -48,7 +49,9 @@ void halveRow(const float* row0, const float* row1, float* out, int width) {
   }
 }
 
-void shrinkRow(const cv::Mat& depth, int factor, int v, float* out, int width) {
+void shrinkRow(const cv::Mat& depth, int factor, const DepthSensor& sensor, int v, cv::Mat& small) {
+  auto* out = small.ptr<float>(v);
+  const int width = small.cols;
   for (int u = 0; u < width; ++u) {
     float nearest = 1e9F;
     for (int dv = 0; dv < factor; ++dv) {
@@ -61,7 +64,7 @@ void shrinkRow(const cv::Mat& depth, int factor, int v, float* out, int width) {
     for (int dv = 0; dv < factor; ++dv) {
       const float* in = depth.ptr<float>(v * factor + dv) + u * factor;
       for (int du = 0; du < factor; ++du) {
-        if (in[du] <= 0 || in[du] > nearest + surfaceTolerance(nearest)) continue;
+        if (in[du] <= 0 || in[du] > nearest + surfaceTolerance(sensor, nearest)) continue;
         sum += 1.0F / in[du];
         count += 1;
       }
@@ -86,8 +89,8 @@ void addTap(const float* centre, const float* neighbour, const float* inverse_wi
 
 POSEFUSION_SIMD_CLONES
 void normalRow(const float* up, const float* row, const float* down, const float* ray_x,
-               float ray_y, float step_x, float step_y, float* nx, float* ny, float* nz,
-               int count) {
+               float ray_y, float step_x, float step_y, DepthSensor sensor, float* nx, float* ny,
+               float* nz, int count) {
   for (int u = 1; u < count - 1; ++u) {
     const float z = row[u], l = row[u - 1], r = row[u + 1], t = up[u], b = down[u];
     // Tangents: difference of neighbouring vertices (ray * depth).
@@ -97,7 +100,7 @@ void normalRow(const float* up, const float* row, const float* down, const float
     float x = by * az - ay * bz, y = ax * bz - bx * az, w = bx * ay - ax * by;
     const float length2 = x * x + y * y + w * w;
     // The surface may lean by up to about 80 degrees; a larger step is an edge.
-    const float limit = 2.0F * surfaceTolerance(z) + 12.0F * step_x * z;
+    const float limit = 2.0F * surfaceTolerance(sensor, z) + 12.0F * step_x * z;
     const float smallest = std::min(std::min(l, r), std::min(t, b));
     const float largest = std::max(std::max(l, r), std::max(t, b));
     const bool good = z > 0 && smallest > 0 && largest - smallest < limit && length2 > 0;
@@ -110,7 +113,7 @@ void normalRow(const float* up, const float* row, const float* down, const float
 
 }  // namespace
 
-void shrinkDepth(const cv::Mat& depth_m, int factor, cv::Mat& small_m) {
+void shrinkDepth(const cv::Mat& depth_m, int factor, const DepthSensor& sensor, cv::Mat& small_m) {
   if (factor == 1) {
     depth_m.copyTo(small_m);
     return;
@@ -118,15 +121,15 @@ void shrinkDepth(const cv::Mat& depth_m, int factor, cv::Mat& small_m) {
   small_m.create(depth_m.rows / factor, depth_m.cols / factor, CV_32FC1);
   forRows(small_m.rows, [&](int v) {
     if (factor == 2) {
-      halveRow(depth_m.ptr<float>(2 * v), depth_m.ptr<float>(2 * v + 1), small_m.ptr<float>(v),
-               small_m.cols);
+      halveRow(depth_m.ptr<float>(2 * v), depth_m.ptr<float>(2 * v + 1), sensor,
+               small_m.ptr<float>(v), small_m.cols);
     } else {
-      shrinkRow(depth_m, factor, v, small_m.ptr<float>(v), small_m.cols);
+      shrinkRow(depth_m, factor, sensor, v, small_m);
     }
   });
 }
 
-void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m) {
+void smoothDepth(const cv::Mat& depth_m, const DepthSensor& sensor, cv::Mat& smooth_m) {
   const int width = depth_m.cols, height = depth_m.rows;
   thread_local cv::Mat inverse;  // of the calling thread; the tasks see a reference to it
   cv::Mat& in = inverse;
@@ -144,7 +147,7 @@ void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m) {
     difference_sum.assign(width, 0.0F);
     const float* z = depth_m.ptr<float>(v);
     const float* centre = in.ptr<float>(v);
-    for (int u = 0; u < width; ++u) inverse_width[u] = z[u] * z[u] / surfaceTolerance(z[u]);
+    for (int u = 0; u < width; ++u) inverse_width[u] = z[u] * z[u] / surfaceTolerance(sensor, z[u]);
     for (int dv = std::max(-kRadius, -v); dv <= std::min(kRadius, height - 1 - v); ++dv) {
       const float* row = in.ptr<float>(v + dv);
       for (int du = -kRadius; du <= kRadius; ++du) {
@@ -163,8 +166,8 @@ void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m) {
   });
 }
 
-void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, cv::Mat& normal_x,
-                    cv::Mat& normal_y, cv::Mat& normal_z) {
+void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, const DepthSensor& sensor,
+                    cv::Mat& normal_x, cv::Mat& normal_y, cv::Mat& normal_z) {
   for (cv::Mat* plane : {&normal_x, &normal_y, &normal_z}) plane->create(depth_m.size(), CV_32FC1);
   const int width = depth_m.cols;
   std::vector<float> ray_x(width);
@@ -178,8 +181,8 @@ void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, cv::Mat
     for (float* row : rows) row[0] = row[width - 1] = 0.0F;
     normalRow(depth_m.ptr<float>(v - 1), depth_m.ptr<float>(v), depth_m.ptr<float>(v + 1),
               ray_x.data(), static_cast<float>((v - camera.cy) / camera.fy),
-              static_cast<float>(1.0 / camera.fx), static_cast<float>(1.0 / camera.fy), rows[0],
-              rows[1], rows[2], width);
+              static_cast<float>(1.0 / camera.fx), static_cast<float>(1.0 / camera.fy), sensor,
+              rows[0], rows[1], rows[2], width);
   });
 }
 

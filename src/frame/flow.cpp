@@ -9,7 +9,6 @@
 namespace pf {
 namespace {
 
-constexpr int kFlowWidth = 320;  // pixels of the images that flow is measured on
 constexpr int kPyramidLevels = 3;
 constexpr int kMaxCorners = 240;
 constexpr double kCornerQuality = 0.004;  // part of the best corner's strength

@@ -26,12 +26,16 @@ void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
 
 }  // namespace
 
-void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config) {
+void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config,
+                          const DepthSensor& taken_by) {
+  sensor = taken_by;
+  sensor.min_depth_m = config.min_depth_m;
+  sensor.max_depth_m = config.max_depth_m;
   full_camera = frame.camera;
   camera = frame.camera.shrunk(config.shrink);
   const cv::Size size(camera.width, camera.height);
   depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthest_m), full_depth_m);
-  shrinkDepth(full_depth_m, config.shrink, depth_m);
+  shrinkDepth(full_depth_m, config.shrink, sensor, depth_m);
   cv::threshold(full_depth_m, full_depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
   cv::threshold(depth_m, beyond_m, config.max_depth_m, 0, cv::THRESH_TOZERO);
   cv::threshold(depth_m, depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
@@ -40,21 +44,22 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
 
   FrameLevel& finest = levels[0];
   finest.camera = camera;
-  smoothDepth(depth_m, smooth_m_);
-  computeNormals(smooth_m_, camera, finest.normal_x, finest.normal_y, finest.normal_z);
+  smoothDepth(depth_m, sensor, smooth_m_);
+  computeNormals(smooth_m_, camera, sensor, finest.normal_x, finest.normal_y, finest.normal_z);
   finest.depth_m = depth_m;
   shrinkToIntensity(frame.color, config.shrink, finest.intensity);
   shrinkStill(mask, size, finest.still);
   for (int i = 1; i < kLevels; ++i) {
     const FrameLevel& finer = levels[i - 1];
     levels[i].camera = finer.camera.shrunk(2);
-    shrinkDepth(finer.depth_m, 2, levels[i].depth_m);
+    shrinkDepth(finer.depth_m, 2, sensor, levels[i].depth_m);
     halveIntensity(finer.intensity, levels[i].intensity);
     shrinkStill(mask, levels[i].intensity.size(), levels[i].still);
   }
   for (int i = 1; i < kLevels; ++i) {
     FrameLevel& level = levels[i];
-    computeNormals(level.depth_m, level.camera, level.normal_x, level.normal_y, level.normal_z);
+    computeNormals(level.depth_m, level.camera, sensor, level.normal_x, level.normal_y,
+                   level.normal_z);
   }
 }
 

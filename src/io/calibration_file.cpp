@@ -79,6 +79,7 @@ DepthCalibration parseCalibration(const std::string& text, const std::string& or
   calibration.pairs = static_cast<std::size_t>(map.number("pairs", 0, 0, kMost));
   calibration.before_mm = map.number("residual_before_mm", 0, 0, kMost);
   calibration.after_mm = map.number("residual_after_mm", 0, 0, kMost);
+  calibration.left_per_m = map.number("left_per_m", 0, 0, kLargest_per_m);
   map.finish();
   try {
     validate(calibration.camera);
@@ -104,8 +105,8 @@ std::string calibrationText(const DepthCalibration& calibration) {
       << "keyframes: " << calibration.keyframes << "\npairs: " << calibration.pairs
       << "\nresidual_before_mm: " << calibration.before_mm
       << "\nresidual_after_mm: " << calibration.after_mm << "\n"
-      << "columns: " << calibration.field.columns() << "\nrows: " << calibration.field.rows()
-      << "\nnodes_per_m: [";
+      << "left_per_m: " << calibration.left_per_m << "\ncolumns: " << calibration.field.columns()
+      << "\nrows: " << calibration.field.rows() << "\nnodes_per_m: [";
   const auto columns = static_cast<std::size_t>(calibration.field.columns());
   const auto& nodes = calibration.field.nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {

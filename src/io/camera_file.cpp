@@ -3,11 +3,13 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/frame/sensor_config.hpp"
 #include "posefusion/io/files.hpp"
 
 namespace pf {
@@ -108,6 +110,16 @@ void readLens(const CameraReader& reader, const std::string& path, PinholeCamera
   }
 }
 
+std::string readSensorKind(const CameraReader& reader, const std::string& path) {
+  const auto kind = reader.text("sensor");
+  if (!kind) return {};
+  const auto& kinds = sensorKinds();
+  if (std::find(kinds.begin(), kinds.end(), *kind) != kinds.end()) return *kind;
+  std::string expected;
+  for (const auto& each : kinds) expected += (expected.empty() ? "" : ", ") + each;
+  throw InputError(path + ": sensor is '" + *kind + "', expected one of " + expected);
+}
+
 }  // namespace
 
 CameraFile loadCamera(const std::string& path) {
@@ -126,6 +138,7 @@ CameraFile loadCamera(const std::string& path) {
     throw InputError(path + ": depth_factor is " + std::to_string(*file.depth_factor) +
                      ", expected steps of the depth in a metre, above 0");
   }
+  file.sensor_kind = readSensorKind(reader, path);
   try {
     validate(camera);
   } catch (const InputError& error) {
@@ -145,6 +158,7 @@ void saveCamera(const std::string& path, const CameraFile& file) {
     out.stream() << coefficientNames(c.lens)[i] << ": " << c.distortion[i] << "\n";
   }
   if (file.depth_factor) out.stream() << "depth_factor: " << *file.depth_factor << "\n";
+  if (!file.sensor_kind.empty()) out.stream() << "sensor: " << file.sensor_kind << "\n";
   out.commit();
 }
 

@@ -151,6 +151,8 @@ class TumFolder : public FrameSource {
     return fs::exists(path) ? loadTrajectory(path) : Trajectory{};
   }
 
+  std::string sensorKind() const override { return sensor_kind_; }
+
   InputReport report() const override { return report_; }
 
  private:
@@ -168,6 +170,7 @@ class TumFolder : public FrameSource {
                        "metre (1000 for millimetres, 5000 for the TUM benchmark)");
     }
     camera_ = file.camera;
+    sensor_kind_ = file.sensor_kind;
     depth_unit_m_ = 1.0 / *file.depth_factor;
   }
 
@@ -197,6 +200,7 @@ class TumFolder : public FrameSource {
   std::int64_t latest_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   PinholeCamera camera_;
   double depth_unit_m_ = 1e-3;
+  std::string sensor_kind_;
   InputReport report_;
 };
 

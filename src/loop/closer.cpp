@@ -21,10 +21,11 @@ constexpr std::size_t kPlacesLike = 12;  // keyframes that a lost camera's pictu
 // The two directions of a pair must tell the same.
 constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
-FernConfig fernConfig(const LoopConfig& config) {
+FernConfig fernConfig(const LoopConfig& config, const DepthSensor& sensor) {
   FernConfig ferns;
   ferns.count = config.ferns;
   ferns.seed = static_cast<std::uint32_t>(config.fern_seed);
+  ferns.max_depth_m = sensor.max_depth_m;
   ferns.novelty = config.fern_novelty;
   return ferns;
 }
@@ -41,8 +42,9 @@ std::size_t LoopCounts::allRefused() const {
   return std::accumulate(refused.begin(), refused.end(), one_way + turned);
 }
 
-LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking)
-    : config_(config), aligner_(tracking), ferns_(fernConfig(config)) {}
+LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking,
+                       const DepthSensor& sensor)
+    : config_(config), sensor_(sensor), aligner_(tracking), ferns_(fernConfig(config, sensor)) {}
 
 void LoopCloser::addKeyframe(const KeyframeView& view) {
   if (!keyframes_.empty() && view.id <= keyframes_.back().view.id) {
@@ -117,7 +119,7 @@ std::vector<MapPose> LoopCloser::placesLike(const KeyframeView& view) {
   alike.resize(std::min(alike.size(), kPlacesLike));
   const Features features = featuresIn(view);
   for (const auto& [dissimilarity, i] : alike) {
-    const FeatureMatch match = matchFeatures(featuresOf(keyframes_[i]), features);
+    const FeatureMatch match = matchFeatures(featuresOf(keyframes_[i]), features, sensor_);
     if (!match.found) continue;
     const MapPose& pose = keyframes_[i].view.pose;
     places.push_back({pose.fragment, pose.T_map_camera * match.T_first_second});
@@ -132,9 +134,10 @@ const Features& LoopCloser::featuresOf(Keyframe& keyframe) {
 
 std::optional<LoopConstraint> LoopCloser::verify(const Candidate& candidate) {
   Keyframe& older = keyframes_[candidate.index];
-  from_.assign(older.view);
+  from_.assign(older.view, sensor_);
   if (auto loop = verify(older.view.id, candidate.T_from_to)) return loop;
-  const FeatureMatch match = matchFeatures(featuresOf(older), featuresOf(keyframes_.back()));
+  const FeatureMatch match =
+      matchFeatures(featuresOf(older), featuresOf(keyframes_.back()), sensor_);
   if (!match.found) return std::nullopt;
   return verify(older.view.id, match.T_first_second);
 }
@@ -173,8 +176,8 @@ std::vector<PoseConstraint> LoopCloser::remeasure(const std::vector<PoseConstrai
   for (const PoseConstraint& c : constraints) {
     const KeyframeView *from = viewOf(c.from), *to = viewOf(c.to);
     if (from == nullptr || to == nullptr) continue;
-    from_.assign(*from);
-    to_.assign(*to);
+    from_.assign(*from, sensor_);
+    to_.assign(*to, sensor_);
     const PlaceVerdict verdict = aligner_.align(from_, to_, c.T_from_to);
     if (!verdict.accepted()) continue;
     measured.push_back(
@@ -188,7 +191,7 @@ std::vector<LoopConstraint> LoopCloser::findLoops() {
   if (!config_.enabled || keyframes_.empty()) return loops;
   const std::vector<Candidate> found = candidates();
   if (found.empty()) return loops;
-  to_.assign(keyframes_.back().view);
+  to_.assign(keyframes_.back().view, sensor_);
   for (const Candidate& candidate : found) {
     if (loops.size() == static_cast<std::size_t>(config_.enough_loops)) break;
     const std::int64_t id = keyframes_[candidate.index].view.id;

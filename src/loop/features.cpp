@@ -7,7 +7,6 @@
 #include <random>
 
 #include "bytes.hpp"
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/se3.hpp"
 
 namespace pf {
@@ -17,6 +16,7 @@ constexpr float kRatio = 0.8F;
 constexpr int kLeastInliers = 12;
 constexpr int kTries = 400;
 constexpr float kSigmas = 3.0F;
+constexpr double kLateralSigmas = 4.0;
 constexpr double kLeastSide_m = 0.15;  // of a triangle: smaller ones tell no rotation
 constexpr std::uint32_t kMagic = 0x54464650, kVersion = 1;  // "PFFT"
 
@@ -55,7 +55,8 @@ struct Points {
   std::vector<double> tolerance_m;
 };
 
-Points pointsOf(const Pairs& pairs, const Features& first, const Features& second) {
+Points pointsOf(const Pairs& pairs, const Features& first, const Features& second,
+                const DepthSensor& sensor) {
   Points p;
   p.first.resize(3, static_cast<Eigen::Index>(pairs.size()));
   p.second.resize(3, static_cast<Eigen::Index>(pairs.size()));
@@ -64,9 +65,8 @@ Points pointsOf(const Pairs& pairs, const Features& first, const Features& secon
     const auto& b = second.points[static_cast<std::size_t>(pairs[k].second)];
     p.first.col(static_cast<Eigen::Index>(k)) = a.cast<double>();
     p.second.col(static_cast<Eigen::Index>(k)) = b.cast<double>();
-    // A pixel or two beside the depth's noise.
-    p.tolerance_m.push_back(surfaceTolerance(std::max(a.z(), b.z()), kSigmas) +
-                            0.006 * std::max(a.z(), b.z()));
+    const float z = std::max(a.z(), b.z());
+    p.tolerance_m.push_back(sensor.tolerance(z, kSigmas) + kLateralSigmas * sensor.lateral_rad * z);
   }
   return p;
 }
@@ -131,13 +131,14 @@ Features findFeatures(const FeatureImage& image, int most) {
   return placed;
 }
 
-FeatureMatch matchFeatures(const Features& first, const Features& second) {
+FeatureMatch matchFeatures(const Features& first, const Features& second,
+                           const DepthSensor& sensor) {
   FeatureMatch match;
   if (first.size() < 2 || second.size() < 2) return match;
   const Pairs pairs = mutualPairs(first, second);
   match.matches = static_cast<int>(pairs.size());
   if (match.matches < kLeastInliers) return match;
-  const Points points = pointsOf(pairs, first, second);
+  const Points points = pointsOf(pairs, first, second, sensor);
   std::mt19937 random(1);
   const auto count = static_cast<std::uint32_t>(pairs.size());
   std::vector<int> best;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -86,7 +85,7 @@ QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const Panora
       // Along the ray a leaning surface is off by more than across it, within a bin most of all.
       const double cosine = std::max<double>(kLeastFacing, query.facing.at<float>(v, u));
       const double across = 0.5 * step_m + 0.5 * bin * range * std::sqrt(1.0 - cosine * cosine) +
-                            3.0 * depthSigma(depth);
+                            3.0 * query.sensor.sigma(depth);
       rays.inverse_tolerance.push_back(static_cast<float>(cosine / across));
       rays.intensity.push_back(query.intensity.at<float>(v, u));
     }

@@ -27,14 +27,16 @@ KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapP
   return view;
 }
 
-void KeyframePicture::assign(const KeyframeView& view) {
+void KeyframePicture::assign(const KeyframeView& view, const DepthSensor& sensor) {
   RgbdFrame whole;
   cv::cvtColor(view.intensity, whole.color, cv::COLOR_GRAY2RGB);
   whole.depth = view.depth_mm;
   whole.camera = view.camera;
   FrameConfig config;
   config.shrink = 1;
-  frame.assign(whole, cv::Mat(), config);
+  config.min_depth_m = sensor.min_depth_m;
+  config.max_depth_m = sensor.max_depth_m;
+  frame.assign(whole, cv::Mat(), config, sensor);
   const FrameLevel& level = frame.levels[0];
   model.camera = level.camera;
   level.depth_m.copyTo(model.depth_m);
@@ -45,7 +47,7 @@ void KeyframePicture::assign(const KeyframeView& view) {
   model.intensity = level.intensity;
   model.support.create(level.depth_m.size(), CV_32FC1);
   model.support.setTo(kFullSupport);
-  points.assign(model);
+  points.assign(model, sensor);
 }
 
 void seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera, ModelView& moved) {

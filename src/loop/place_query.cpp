@@ -67,7 +67,8 @@ PlaceQuery placeQuery(const WorkingFrame& frame, const Eigen::Vector3d& up_guess
   const FrameLevel& coarse = frame.levels[kLevels - 1];
   PlaceQuery query;
   query.camera = coarse.camera.shrunk(2);
-  shrinkDepth(coarse.depth_m, 2, query.depth_m);
+  query.sensor = frame.sensor;
+  shrinkDepth(coarse.depth_m, 2, frame.sensor, query.depth_m);
   halveIntensity(coarse.intensity, query.intensity);
   cv::Mat people;
   cv::resize(coarse.still, people, query.depth_m.size(), 0, 0, cv::INTER_AREA);

@@ -13,6 +13,8 @@ namespace pf {
 namespace {
 
 constexpr double kBin_rad = 0.033;  // of the panorama, about: a pixel of the query and a bit
+// The corner of a picture is farther than its depth, along the axis, tells.
+constexpr double kCornerRange = 1.2;
 constexpr double kSameTilt_rad = 0.03;
 constexpr double kSameHeight_m = 0.05;
 constexpr double kApart_m = 0.2, kApart_rad = 0.17;
@@ -155,7 +157,9 @@ Grid makeGrid(const PlaceQuery& query, const MapPose& around, const Eigen::Vecto
   grid.shape.headings = config.headings;
   grid.shape.phases =
       std::max(1, static_cast<int>(std::lround(2.0 * M_PI / (config.headings * kBin_rad))));
-  grid.shape.max_range_m = static_cast<float>(config.max_range_m);
+  const double max_range_m =
+      config.max_range_m > 0 ? config.max_range_m : kCornerRange * query.sensor.max_depth_m;
+  grid.shape.max_range_m = static_cast<float>(max_range_m);
   grid.step_m = config.step_m;
   grid.side = 2 * static_cast<int>(std::lround(config.reach_m / config.step_m)) + 1;
   addTilts(query, ups, grid);
@@ -198,8 +202,8 @@ std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQue
                                          const PlaceSearchConfig& config) {
   Grid grid = makeGrid(query, around, up, config);
   if (grid.shape.rows == 0) return {};
-  const MapPoints near =
-      cut(points, grid.T_map_grid.inverse(), config.max_range_m + std::sqrt(2.0) * config.reach_m);
+  const MapPoints near = cut(points, grid.T_map_grid.inverse(),
+                             grid.shape.max_range_m + std::sqrt(2.0) * config.reach_m);
   addLayers(query, near, config, grid);
   std::vector<PlaceCandidate> all(grid.poses());
   parallelFor(grid.positions(), 8, [&](std::size_t begin, std::size_t end) {

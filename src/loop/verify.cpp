@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
-
 namespace pf {
 namespace {
 
@@ -54,8 +52,10 @@ struct Counts {
 };
 
 /// One row; `windows` are those that it crosses.
-void compareRow(const FrameLevel& level, const ModelView& view, int v, GreySums* windows,
+void compareRow(const WorkingFrame& frame, const ModelView& view, int v, GreySums* windows,
                 Counts& counts) {
+  const FrameLevel& level = frame.levels[0];
+  const DepthSensor sensor = frame.sensor;
   const auto *seen = level.depth_m.ptr<float>(v), *model = view.depth_m.ptr<float>(v);
   const auto *ax = level.normal_x.ptr<float>(v), *ay = level.normal_y.ptr<float>(v);
   const auto *az = level.normal_z.ptr<float>(v), *bx = view.normal_x.ptr<float>(v);
@@ -69,7 +69,7 @@ void compareRow(const FrameLevel& level, const ModelView& view, int v, GreySums*
     if (model[u] <= 0) continue;
     ++counts.known;
     const float nz = std::min(-0.2F, bz[u]);
-    const float tolerance = surfaceTolerance(std::max(seen[u], model[u]), kAgreeingSigmas) / -nz;
+    const float tolerance = sensor.tolerance(std::max(seen[u], model[u]), kAgreeingSigmas) / -nz;
     if (seen[u] > model[u] + tolerance) ++counts.through;
     if (seen[u] < model[u] - tolerance) ++counts.hidden;
     if (std::abs(seen[u] - model[u]) > tolerance) continue;
@@ -99,7 +99,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   std::vector<GreySums> windows(static_cast<std::size_t>(across * down));
   Counts counts;
   for (int v = 0; v < level.depth_m.rows; ++v) {
-    compareRow(level, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
+    compareRow(frame, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
   }
   PlaceAgreement result;
   result.view = counts.valid / static_cast<double>(level.depth_m.total());
@@ -169,7 +169,7 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
   for (int i = 0; i < kRounds; ++i) {
     const Eigen::Isometry3d T = verdict.alignment.T_map_camera;
     renderer_.render(map, frame.camera, T, options, view_);
-    model_.assign(view_);
+    model_.assign(view_, frame.sensor);
     TrackingStart start = freeStart(T);
     start.brightness = verdict.alignment.brightness;
     verdict.alignment = track(frame, model_, start, tracking_);

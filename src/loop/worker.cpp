@@ -60,15 +60,16 @@ std::optional<Eigen::Isometry3d> standing(const std::vector<Eigen::Isometry3d>& 
 }  // namespace
 
 LoopWorker::LoopWorker(const LoopConfig& config, const TrackingConfig& tracking,
-                       const CalibrationConfig& calibration)
+                       const DepthSensor& sensor, const CalibrationConfig& calibration)
     : config_(config),
       tracking_(tracking),
+      sensor_(sensor),
       calibration_(calibration),
-      closer_(config, tracking),
+      closer_(config, tracking, sensor),
       verifier_(tracking) {}
 
 void LoopWorker::begin() {
-  closer_ = LoopCloser(config_, tracking_);
+  closer_ = LoopCloser(config_, tracking_, sensor_);
   learner_ = FieldLearner();
 }
 
@@ -81,6 +82,7 @@ void LoopWorker::addKeyframe(const KeyframeView& view) {
   seen.T_map_camera = view.pose.T_map_camera;
   seen.fragment = view.pose.fragment;
   seen.depth_mm = view.depth_mm;
+  seen.sensor = sensor_;
   learner_.add(seen);
 }
 
@@ -90,9 +92,10 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   const auto estimate =
       question.calibrates ? std::optional<FieldEstimate>(learner_.estimate()) : learner_.learn();
   if (!estimate) return;
-  answer.calibration_doubt = estimate->reason;
-  if (!estimate->worth_taking) return;
+  answer.calibration_doubt = question.is_corrected ? estimate->doubtOfStep() : estimate->reason;
+  if (!answer.calibration_doubt.empty()) return;
   answer.calibration.emplace();
+  answer.calibration->left_per_m = estimate->left_per_m();
   answer.calibration->field = estimate->field;
   answer.calibration->keyframes = estimate->views;
   answer.calibration->pairs = estimate->pairs;

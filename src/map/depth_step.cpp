@@ -2,6 +2,7 @@
 #include "posefusion/map/depth_step.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace pf {
@@ -71,8 +72,17 @@ class RayMotion {
   const PinholeCamera& camera_;
 };
 
-void correct(SurfelBlock& block, const Origins& origins, const RayMotion& motion,
-             std::vector<char>& moved) {
+/// A mean over frames knows no better than what all of them are off by. In units of surfels: the
+/// variance of a measurement at 1 m, over that of what is left at z.
+float mostWeight(const DepthStep& step, double z_m) {
+  const double left_m = step.left_per_m * z_m * z_m;
+  const double at_1_m = step.sensor.sigma(1.0F);
+  return left_m > 0 ? static_cast<float>(at_1_m * at_1_m / (left_m * left_m))
+                    : std::numeric_limits<float>::max();
+}
+
+void correct(SurfelBlock& block, const DepthStep& step, const Origins& origins,
+             const RayMotion& motion, std::vector<char>& moved) {
   SurfelArrays& s = block.surfels;
   const Keyframe* keyframe = nullptr;
   Eigen::Isometry3d T_camera_map = Eigen::Isometry3d::Identity();
@@ -94,6 +104,7 @@ void correct(SurfelBlock& block, const Origins& origins, const RayMotion& motion
     s.ny[i] = normal.y();
     s.nz[i] = normal.z();
     s.radius[i] *= static_cast<float>(factor);
+    s.weight[i] = std::min(s.weight[i], mostWeight(step, p.z()));
     moved[i] = 1;
   }
 }
@@ -103,9 +114,9 @@ void correct(SurfelBlock& block, const Origins& origins, const RayMotion& motion
 void correctDepth(SurfelMap& map, const DepthStep& step) {
   const Origins origins(step.keyframes);
   const RayMotion motion(step.field, step.camera);
-  map.move(
-      [&](SurfelBlock& block, std::vector<char>& moved) { correct(block, origins, motion, moved); },
-      [](int fragment) { return fragment; });
+  map.move([&](SurfelBlock& block,
+               std::vector<char>& moved) { correct(block, step, origins, motion, moved); },
+           [](int fragment) { return fragment; });
 }
 
 }  // namespace pf

@@ -7,7 +7,6 @@
 
 #include "insertion.hpp"
 #include "posefusion/core/error.hpp"
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 #include "posefusion/map/visibility.hpp"
@@ -60,8 +59,9 @@ std::string sizeText(const cv::Size& size) {
 
 /// The depth of the people of a mask at the size of the working frame; empty when there are none.
 /// `full_m`: work memory.
-void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const cv::Size& size,
+void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const WorkingFrame& frame,
                 cv::Mat& full_m, cv::Mat& person_m) {
+  const cv::Size size = frame.depth_m.size();
   person_m.release();
   if (mask.empty()) return;
   const int factor = mask.cols / size.width;
@@ -78,18 +78,19 @@ void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const cv::Siz
   full_m.create(mask.size(), CV_32FC1);
   full_m.setTo(0);
   input_depth_m.copyTo(full_m, mask);
-  shrinkDepth(full_m, factor, person_m);
+  shrinkDepth(full_m, factor, frame.sensor, person_m);
 }
 
 /// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
-double reachOf(const cv::Mat& seen_m, const cv::Mat& people_m, const cv::Mat& person_m) {
+double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& people_m,
+               const cv::Mat& person_m) {
   double farthest = 0;
   for (const cv::Mat& depth_m : {seen_m, people_m, person_m}) {
     double most = 0;
     if (!depth_m.empty()) cv::minMaxLoc(depth_m, nullptr, &most);
     farthest = std::max(farthest, most);
   }
-  const double tolerance = 2.0 * surfaceTolerance(static_cast<float>(farthest), 5.0F);
+  const double tolerance = 2.0 * sensor.tolerance(static_cast<float>(farthest), 5.0F);
   return farthest + std::max<double>(tolerance, people_m.empty() ? 0.0 : NearPeople::kReach_m);
 }
 
@@ -109,9 +110,8 @@ Fuser::~Fuser() = default;
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
   Scratch& s = *scratch_;
-  const cv::Size size = frame.depth_m.size();
-  findPeople(options.mask, options.input_depth_m, size, s.full_m, s.people_m);
-  findPeople(options.in_map_mask, options.input_depth_m, size, s.full_m, s.evidence.person_m);
+  findPeople(options.mask, options.input_depth_m, frame, s.full_m, s.people_m);
+  findPeople(options.in_map_mask, options.input_depth_m, frame, s.full_m, s.evidence.person_m);
   s.evidence.near_people.clear();
   if (!s.people_m.empty()) s.evidence.near_people.assign(s.people_m, frame.camera);
   map.advance();
@@ -130,7 +130,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
   s.evidence.known_behind.assign(frame.depth_m.size());
   s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
-                            reachOf(s.seen_m, s.people_m, s.evidence.person_m));
+                            reachOf(frame.sensor, s.seen_m, s.people_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);
   const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);
   std::vector<SurfelUpdate::Result> results(ranges.size());

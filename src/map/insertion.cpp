@@ -37,7 +37,7 @@ void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const Fus
   s.b[i] = exposed(color[2], options);
   const float cosine = -(nx * x + ny * y + nz * z) / std::sqrt(x * x + y * y + z * z);
   s.radius[i] = footprintRadius(z, fx, cosine);
-  s.weight[i] = measurementWeight(z);
+  s.weight[i] = measurementWeight(frame.sensor, z);
   s.confidence[i] = 1.0F;
   s.violations[i] = 0;
 }

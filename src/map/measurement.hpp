@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "posefusion/core/noise.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/map/fusion.hpp"
 
 namespace pf {
 
 /// Weight of a measurement: 1 / variance, 1 at a distance of 1 m.
-inline float measurementWeight(float z) {
-  const float ratio = depthSigma(1.0F) / depthSigma(z);
+inline float measurementWeight(const DepthSensor& sensor, float z) {
+  const float ratio = sensor.sigma(1.0F) / sensor.sigma(z);
   return std::min(ratio * ratio, 2.0F);
 }
 

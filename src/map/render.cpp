@@ -8,7 +8,6 @@
 
 #include "disc_maker.hpp"
 #include "pixel_minima.hpp"
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/map/visibility.hpp"
 
@@ -16,7 +15,9 @@ namespace pf {
 namespace {
 
 /// Discs closer together than this (m) belong to one surface.
-inline float surfaceThickness(float z) { return surfaceTolerance(z, 5.0F); }
+inline float surfaceThickness(const DepthSensor& sensor, float z) {
+  return sensor.tolerance(z, 5.0F);
+}
 
 /// Orders hits on a pixel: stable before unstable, then by `value` (>= 0), then by disc.
 inline std::uint64_t keyOf(bool stable, float value, std::size_t disc) {
@@ -82,15 +83,17 @@ struct Candidate {
 };
 
 /// Is a disc of the surface that a pixel shows, as far as `nearest` tells it?
-inline bool isOfNearest(std::uint64_t nearest, bool stable, float depth) {
+inline bool isOfNearest(const DepthSensor& sensor, std::uint64_t nearest, bool stable,
+                        float depth) {
   const float front = valueOf(nearest);
-  return stableOf(nearest) == stable && depth <= front + surfaceThickness(front);
+  return stableOf(nearest) == stable && depth <= front + surfaceThickness(sensor, front);
 }
 
 }  // namespace
 
 /// What is kept between calls. Range k owns the discs from k * kRangeSurfels on, and candidates[k].
 struct SurfelRenderer::Buffers {
+  DepthSensor sensor;
   PixelMinima nearest, chosen;
   std::unique_ptr<Disc[]> discs;  // never initialised as a whole: most of it is never touched
   std::size_t disc_capacity = 0;
@@ -123,7 +126,8 @@ struct SurfelRenderer::Buffers {
       const bool stable = discs[number].stable;
       std::uint64_t& front = own[hit.pixel];
       front = std::min(front, keyOf(stable, hit.depth, number));
-      if (!isOfNearest(front, stable, hit.depth)) continue;  // what is nearest only comes nearer
+      if (!isOfNearest(sensor, front, stable, hit.depth))
+        continue;  // what is nearest only comes nearer
       candidates[range].push_back({keyOf(stable, hit.distance, number), hit.pixel, hit.depth});
     }
   }
@@ -132,7 +136,7 @@ struct SurfelRenderer::Buffers {
   void choose(std::size_t range) {
     std::uint64_t* own = chosen.own();
     for (const Candidate& hit : candidates[range]) {
-      if (!isOfNearest(nearest[hit.pixel], stableOf(hit.key), hit.depth)) continue;
+      if (!isOfNearest(sensor, nearest[hit.pixel], stableOf(hit.key), hit.depth)) continue;
       own[hit.pixel] = std::min(own[hit.pixel], hit.key);
     }
   }
@@ -149,6 +153,7 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   const DiscMaker maker(map, options, camera, T_map_camera);
   const Rays& rays = maker.rays();
   Buffers& b = *buffers_;
+  b.sensor = map.sensor();
   b.prepare(static_cast<std::size_t>(camera.width) * camera.height, ranges.size());
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -29,9 +29,6 @@ constexpr float kMinCosine = 0.2F;
 // What stands so far before a stable surface may have come there.
 constexpr float kWellBefore_m = 0.25F;
 
-/// Depths closer than this measure the same surface.
-inline float agreement(float z) { return surfaceTolerance(z, 5.0F); }
-
 }  // namespace
 
 SurfelUpdate::SurfelUpdate(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
@@ -217,7 +214,7 @@ void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float m
   s.confidence[i] += 1.0F;
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
-  const float gain = measurementWeight(measured);
+  const float gain = measurementWeight(frame_.sensor, measured);
   const float old = std::min(s.weight[i], max_weight_);
   const float share = gain / (old + gain);
   s.weight[i] = old + gain;

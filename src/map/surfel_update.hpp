@@ -90,6 +90,8 @@ class SurfelUpdate {
     float facing;    ///< normal . (x, y, z): above 0 it is seen from behind
   };
   bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
+  /// Depths closer than this (m) measure the same surface.
+  float agreement(float z) const { return frame_.sensor.tolerance(z, 5.0F); }
   bool isLayer(const Place& p, float measured, float cosine) const;
   void doubt(SurfelArrays& s, std::size_t i, const Place& p) const;
   void violate(SurfelArrays& s, std::size_t i, int times = 1) const;

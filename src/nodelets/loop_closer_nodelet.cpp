@@ -26,10 +26,12 @@ class LoopCloserNodelet : public ChainNodelet {
 
   void start() override {
     Parameters parameters(getPrivateNodeHandle());
-    const pf::Config config = parameters.config({"loop", "tracking", "calibration"});
+    const pf::Config config =
+        parameters.config({"loop", "tracking", "sensor", "frame", "calibration"});
     report(parameters);
     watch().allowSilence();  // questions are asked now and then
-    closer_ = std::make_unique<pf::LoopWorker>(config.loop, config.tracking, config.calibration);
+    closer_ = std::make_unique<pf::LoopWorker>(config.loop, config.tracking,
+                                               pf::depthSensorOf(config), config.calibration);
     worker_ =
         std::make_unique<Worker<Question>>(0, [this](const Question& asked) { answer(asked); });
     questions_ = getNodeHandle().subscribe(topics::kKeyframe, kInternalQueue,

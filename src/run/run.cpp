@@ -62,6 +62,12 @@ struct SeenSource {
 
 }  // namespace
 
+Config configFor(Config config, const FrameSource& source) {
+  const std::string named = source.sensorKind();
+  if (config.sensor.kind == kAnySensor && !named.empty()) config.sensor.kind = named;
+  return config;
+}
+
 void runPipeline(FrameSource& source, Pipeline& pipeline, const FrameDone& done) {
   Handover<SourceFrame> read;
   Handover<SeenSource> seen;

@@ -18,7 +18,6 @@ namespace pf {
 namespace {
 
 constexpr double kMinDepth_m = 0.25;
-constexpr double kMaxDepth_m = 8.0;
 constexpr float kUnlabelledFading = 0.6F;  // of the likelihood of joints outside the mask ...
 constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
 
@@ -73,7 +72,7 @@ PeopleSegmenter::~PeopleSegmenter() = default;
 void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
   const auto sizeOf = [](const SceneGrid& g) { return std::make_tuple(g.cols, g.rows, g.step); };
   const auto last = sizeOf(evidence.grid);
-  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m);
+  depthInMetres(frame, kMinDepth_m, kFarthestPerson_m, depth_m);
   sampleGrid(frame, depth_m, grid_width, evidence.grid);
   if (sizeOf(evidence.grid) != last) people.clear();
 }

@@ -24,6 +24,7 @@ void visitFields(Config& config, FieldVisitor& visitor) {
   visitGroup("blur", config.blur, visitor);
   visitGroup("pose", config.pose, visitor);
   visitGroup("segmentation", config.segmentation, visitor);
+  visitGroup("sensor", config.sensor, visitor);
   visitGroup("frame", config.frame, visitor);
   visitGroup("tracking", config.tracking, visitor);
   visitGroup("map", config.map, visitor);

@@ -87,7 +87,7 @@ SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns
   return estimateMotion(flow,
                         {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
                          follows && fused_before ? &view : nullptr, &landmarks_,
-                         previous_.T_map_camera, previous_.small.still},
+                         previous_.T_map_camera, previous_.small.still, frame.sensor},
                         frame.full_camera);
 }
 
@@ -229,8 +229,8 @@ void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, cons
   if (!agree(prior.T_map_camera, previous_.T_map_camera)) {
     landmarks_.move(previous_.T_map_camera * prior.T_map_camera.inverse());
   }
-  landmarks_.update(flow, frame.full_depth_m, frame.full_camera, previous_.T_map_camera,
-                    location.outcome == FrameOutcome::fused);
+  landmarks_.update(flow, {frame.full_depth_m, frame.full_camera, frame.sensor},
+                    previous_.T_map_camera, location.outcome == FrameOutcome::fused);
   const FrameLevel& coarse = frame.levels[kLevels - 1];
   previous_.stamp_ns = stamp_ns;
   frame.full_depth_m.copyTo(previous_.depth_m);

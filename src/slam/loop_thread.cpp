@@ -12,7 +12,8 @@ namespace {
 class ThreadResponder : public LoopResponder {
  public:
   explicit ThreadResponder(const Config& config)
-      : worker_(std::make_shared<LoopWorker>(config.loop, config.tracking, config.calibration)) {}
+      : worker_(std::make_shared<LoopWorker>(config.loop, config.tracking, depthSensorOf(config),
+                                             config.calibration)) {}
 
   void ask(LoopQuestion question) override {
     // Each question waits for the one before: the worker sees them in their order. A future holds

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/mapper.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
+#include "posefusion/segmentation/segmenter.hpp"
 
 namespace pf {
 namespace {
 
 // A guess that lies further from the last view than this sees too much that the view does not show.
 constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
-// Neither tracking nor the segmenter looks at anything farther than 8 m.
-constexpr double kViewDepth_m = 8.0;
+// The view is drawn as far as frames are tracked, and a match beyond that may still be near enough.
+constexpr float kMatchSigmas = 5.0F;
 
-RenderOptions viewOptions(int fragment) {
+/// Not less far than the segmenter looks for people, whatever the range of the map: who stands
+/// before a far wall is told by it.
+RenderOptions viewOptions(const DepthSensor& sensor, int fragment) {
+  const double range_m = sensor.max_depth_m;
   RenderOptions options;
-  options.max_depth_m = kViewDepth_m;
+  options.max_depth_m = std::max(
+      kFarthestPerson_m, range_m + sensor.tolerance(static_cast<float>(range_m), kMatchSigmas));
   options.fragment = fragment;
   return options;
 }
@@ -63,12 +69,13 @@ RenderedModel Mapper::State::modelFrom(const MapPose& pose) {
       angleOf(step) < kSameViewTurn_rad) {
     return {model, view.T_map_camera};
   }
-  model_elsewhere.assign(viewFrom(pose));
+  model_elsewhere.assign(viewFrom(pose), sensor);
   return {model_elsewhere, pose.T_map_camera};
 }
 
 const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
-  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), elsewhere);
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment),
+                  elsewhere);
   return elsewhere;
 }
 
@@ -125,8 +132,8 @@ void Mapper::State::follow(const Location& location, bool fill) {
 
 /// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
 void Mapper::State::showFrom(const MapPose& pose, bool fill) {
-  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(pose.fragment), view);
-  model.assign(view, fill ? &frame.levels[0] : nullptr);
+  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment), view);
+  model.assign(view, sensor, fill ? &frame.levels[0] : nullptr);
   seen = view;
   if (calibration) seen.depth_m = distorter.inMetres(view.depth_m, 1.0);
 }
@@ -147,7 +154,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   if (s.view.empty()) s.camera = input.frame.camera;
   const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
-  s.frame.assign(input.frame, input.mask, s.config.frame);
+  s.frame.assign(input.frame, input.mask, s.config.frame, s.sensor);
   Location location = s.locate(input);
   s.countLostTime(location, before_ns);
   if (s.wantsFragment(input)) location = s.beginFragment();

@@ -7,7 +7,6 @@
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/map/depth_step.hpp"
-#include "posefusion/map/layers.hpp"
 
 namespace pf {
 namespace {
@@ -51,7 +50,6 @@ void Mapper::State::take(const LoopAnswer& answer) {
   if (answer.remeasured.empty()) return;
   const std::vector<MapPose> before = back_end.keyframePoses();
   follow({back_end.remeasure(answer.remeasured)}, before);
-  removeYoungerLayers(map);
 }
 
 /// One step of what is known of the camera.
@@ -66,14 +64,14 @@ void Mapper::State::improve(const DepthCalibration& step) {
   }
   use(std::move(known));
   ++depth_version;
-  correctDepthBy(step.field);
+  correctDepthBy(step.field, step.left_per_m);
   back_end.countCorrection();
   closer_is_old = constraints_are_old = true;
 }
 
 /// Takes everything that depth has made to what it would be had it been corrected by more.
-void Mapper::State::correctDepthBy(const DepthField& step) {
-  correctDepth(map, {step, frame.camera, back_end.graph().keyframes()});
+void Mapper::State::correctDepthBy(const DepthField& step, double left_per_m) {
+  correctDepth(map, {step, frame.camera, back_end.graph().keyframes(), sensor, left_per_m});
   DepthCorrector views_corrector(step);
   for (KeyframeView& keyframe : views) {
     keyframe.depth_mm = views_corrector.likeInput(keyframe.depth_mm, kMillimetre);

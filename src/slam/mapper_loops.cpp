@@ -87,6 +87,7 @@ void Mapper::State::tellCloser() {
   }
   if (std::exchange(keyframes_moved, false)) question->corrected = back_end.keyframePoses();
   question->depth_version = depth_version;
+  question->is_corrected = calibration.has_value();
   question->calibrates = std::exchange(calibration_is_asked, false);
   if (std::exchange(constraints_are_old, false)) {
     question->remeasured = back_end.graph().constraints();
@@ -199,7 +200,7 @@ void Mapper::load(SavedMap saved, MapUse use) {
   if (saved.calibration) {
     s.use(std::move(saved.calibration));
   } else if (s.calibration) {  // the map is of depth as it was measured
-    s.correctDepthBy(s.calibration->field);
+    s.correctDepthBy(s.calibration->field, s.calibration->left_per_m);
   }
   const std::vector<MapPose> poses = s.back_end.keyframePoses();
   for (const MapPose& pose : poses) s.last_fragment = std::max(s.last_fragment, pose.fragment);

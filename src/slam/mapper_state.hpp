@@ -32,9 +32,14 @@ struct FragmentPlace {
 /// and what its answers do stands in mapper_loops.cpp, fragments in mapper_fragments.cpp.
 struct Mapper::State {
   explicit State(const Config& c)
-      : config(c), map(c.map), localiser(c.tracking), back_end(c.graph) {}
+      : config(c),
+        sensor(depthSensorOf(c)),
+        map(c.map, SurfelMap::kBlockSide_m, sensor),
+        localiser(c.tracking),
+        back_end(c.graph) {}
 
   Config config;
+  DepthSensor sensor;
   SurfelMap map;
   std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
@@ -108,7 +113,7 @@ struct Mapper::State {
   void use(std::optional<DepthCalibration> known);
   void take(const LoopAnswer& answer);
   void improve(const DepthCalibration& step);
-  void correctDepthBy(const DepthField& step);
+  void correctDepthBy(const DepthField& step, double left_per_m);
 };
 
 }  // namespace pf

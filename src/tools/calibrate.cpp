@@ -56,9 +56,9 @@ int calibrate(const Options& options) {
   if (truth) printTruth(field, *truth);
   if (!options.picture.empty()) savePng(options.picture, drawFields(field, truth));
   if (!estimate.worth_taking) throw InputError(options.map + ": " + estimate.reason);
-  saveCalibration(options.output,
-                  {options.name, recorded.camera.withoutDistortion(), field, estimate.views,
-                   estimate.pairs, estimate.kept_out.before_mm, estimate.kept_out.after_mm});
+  saveCalibration(options.output, {options.name, recorded.camera.withoutDistortion(), field,
+                                   estimate.views, estimate.pairs, estimate.kept_out.before_mm,
+                                   estimate.kept_out.after_mm, estimate.left_per_m()});
   std::printf("calibration  %s\n", options.output.c_str());
   return 0;
 }

@@ -124,13 +124,15 @@ void requirePoses(const RunOptions& options, const RunReport& report) {
   throw InputError(text);
 }
 
-int run(const RunOptions& options) {
+int run(const RunOptions& given) {
+  RunOptions options = given;
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
     cv::setNumThreads(options.threads);
   }
   const auto source = posefusion_ros::openInput(options.input, options.reading);
+  options.config = configFor(options.config, *source);
   RunReport report(options.config);
   report.setTruth(truthFor(options, *source));
   Pipeline pipeline(options.config, detectorFor(options, *source));

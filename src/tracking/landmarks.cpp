@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
-
 namespace pf {
 namespace {
 
-constexpr int kReach_px = 2;   // depth is the mean of 5x5 pixels ...
-constexpr int kMinDepths = 3;  // ... of which so many must be there
-// A corner that is elsewhere by more than this in some frames moves by itself.
-constexpr double kMissed_px = 3.0;
+// Depth around a corner is the mean of what lies so many pixels of its flow around it, of which
+// this share must be there.
+constexpr double kReach_flow_px = 1.0, kMinDepths = 0.12;
+// A corner that is elsewhere by more than this (pixels of its flow) in some frames moves by itself.
+constexpr double kMissed_flow_px = 1.5;
 constexpr float kMissedSigmas = 5.0F;
 constexpr int kMostMisses = 3;
 // The mean forgets what is older than about so many frames: the place follows the map as fusion
@@ -21,21 +20,20 @@ constexpr double kMostFrames = 30.0;
 
 /// Does a frame that sees a corner at `pixel`, at depth z (m), see it where the landmark is?
 bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
-            const PinholeCamera& camera) {
+            const DepthPicture& seen) {
   if (expected.z() < 0.1) return false;
-  const Eigen::Vector2d error = camera.project(expected) - Eigen::Vector2d(pixel.x, pixel.y);
-  return error.norm() < kMissed_px &&
-         std::abs(expected.z() - z) < surfaceTolerance(static_cast<float>(z), kMissedSigmas);
+  const Eigen::Vector2d error = seen.camera.project(expected) - Eigen::Vector2d(pixel.x, pixel.y);
+  return error.norm() < kMissed_flow_px * flowPixel(seen.camera.width) &&
+         std::abs(expected.z() - z) < seen.sensor.tolerance(static_cast<float>(z), kMissedSigmas);
 }
 
 }  // namespace
 
-double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel) {
+double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel) {
   const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
-  const int first_u = std::max(0, u - kReach_px),
-            last_u = std::min(depth_m.cols - 1, u + kReach_px);
-  const int first_v = std::max(0, v - kReach_px),
-            last_v = std::min(depth_m.rows - 1, v + kReach_px);
+  const int reach = static_cast<int>(std::lround(kReach_flow_px * flowPixel(depth_m.cols)));
+  const int first_u = std::max(0, u - reach), last_u = std::min(depth_m.cols - 1, u + reach);
+  const int first_v = std::max(0, v - reach), last_v = std::min(depth_m.rows - 1, v + reach);
   float least = 1e9F, most = 0.0F, sum = 0.0F;
   int count = 0;
   for (int row = first_v; row <= last_v; ++row) {
@@ -49,7 +47,8 @@ double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel) {
       ++count;
     }
   }
-  if (count < kMinDepths || most - least > surfaceTolerance(least, 4.0F)) return 0.0;
+  const int side = 2 * reach + 1;
+  if (count < kMinDepths * side * side || most - least > sensor.tolerance(least, 4.0F)) return 0.0;
   return static_cast<double>(static_cast<float>(count) / sum);
 }
 
@@ -61,25 +60,25 @@ const Landmark* Landmarks::find(std::uint32_t id) const {
   return at != landmarks_.end() && at->id == id ? &*at : nullptr;
 }
 
-void Landmarks::update(const SparseFlow& flow, const cv::Mat& depth_m, const PinholeCamera& camera,
+void Landmarks::update(const SparseFlow& flow, const DepthPicture& seen,
                        const Eigen::Isometry3d& T_map_camera, bool believed) {
   const Eigen::Isometry3d T_camera_map = T_map_camera.inverse();
   next_.clear();
   for (std::size_t i = 0; i < flow.ids.size(); ++i) {
     const cv::Point2f& pixel = flow.after[i];
-    const double z = smoothDepthAt(depth_m, pixel);
+    const double z = smoothDepthAt(seen.depth_m, seen.sensor, pixel);
     const Landmark* known = find(flow.ids[i]);
     if (known == nullptr && z <= 0) continue;
     Landmark landmark = known != nullptr ? *known : Landmark{flow.ids[i]};
     if (z > 0 && (known == nullptr || believed)) {
-      const bool right = known == nullptr || agrees(T_camera_map * known->at, pixel, z, camera);
-      const double sigma_m = depthSigma(static_cast<float>(z));
+      const bool right = known == nullptr || agrees(T_camera_map * known->at, pixel, z, seen);
+      const double sigma_m = seen.sensor.sigma(static_cast<float>(z));
       const double weight = 1.0 / (sigma_m * sigma_m);
       landmark.misses += right ? 0 : 1;
       landmark.weight = std::min(landmark.weight, (kMostFrames - 1.0) * weight);
       if (right) {
-        const Eigen::Vector3d seen = T_map_camera * camera.unproject(pixel.x, pixel.y, z);
-        landmark.at = (landmark.weight * landmark.at + weight * seen) / (landmark.weight + weight);
+        const Eigen::Vector3d at = T_map_camera * seen.camera.unproject(pixel.x, pixel.y, z);
+        landmark.at = (landmark.weight * landmark.at + weight * at) / (landmark.weight + weight);
         landmark.weight += weight;
       }
     }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -21,13 +20,14 @@ float weightOf(float support) {
 }
 
 /// Mean over the nearest surface of a 2x2 block of `fine`, into pixel (u, v) of `coarse`.
-void halvePixel(const ModelPlanes& fine, int u, int v, ModelPlanes& coarse) {
+void halvePixel(const ModelPlanes& fine, const DepthSensor& sensor, int u, int v,
+                ModelPlanes& coarse) {
   float nearest = 1e9F;
   for (int k = 0; k < 4; ++k) {
     const float z = fine.depth_m.at<float>(2 * v + k / 2, 2 * u + k % 2);
     if (z > 0 && z < nearest) nearest = z;
   }
-  const float limit = nearest + surfaceTolerance(nearest, 4.0F);
+  const float limit = nearest + sensor.tolerance(nearest, 4.0F);
   float inverse = 0, normal[3] = {}, intensity = 0, support = 0, count = 0;
   for (int k = 0; k < 4; ++k) {
     const int row = 2 * v + k / 2, col = 2 * u + k % 2;
@@ -50,7 +50,8 @@ void halvePixel(const ModelPlanes& fine, int u, int v, ModelPlanes& coarse) {
 
 /// The view, and the frame where the view shows nothing or something well behind the frame's
 /// surface.
-void fillFrom(const FrameLevel& frame, const ModelView& view, ModelPlanes& planes) {
+void fillFrom(const FrameLevel& frame, const ModelView& view, const DepthSensor& sensor,
+              ModelPlanes& planes) {
   view.depth_m.copyTo(planes.depth_m);
   view.normal_x.copyTo(planes.normal[0]);
   view.normal_y.copyTo(planes.normal[1]);
@@ -62,7 +63,7 @@ void fillFrom(const FrameLevel& frame, const ModelView& view, ModelPlanes& plane
       const float* seen = frame.depth_m.ptr<float>(v);
       for (int u = 0; u < view.depth_m.cols; ++u) {
         const float known = view.depth_m.at<float>(v, u);
-        const bool hides = known <= 0 || seen[u] + surfaceTolerance(seen[u], 5.0F) < known;
+        const bool hides = known <= 0 || seen[u] + sensor.tolerance(seen[u], 5.0F) < known;
         if (seen[u] <= 0 || !hides || frame.normal_z.at<float>(v, u) >= 0) continue;
         planes.depth_m.at<float>(v, u) = seen[u];
         planes.normal[0].at<float>(v, u) = frame.normal_x.at<float>(v, u);
@@ -75,7 +76,7 @@ void fillFrom(const FrameLevel& frame, const ModelView& view, ModelPlanes& plane
   });
 }
 
-void halve(const ModelPlanes& fine, ModelPlanes& coarse) {
+void halve(const ModelPlanes& fine, const DepthSensor& sensor, ModelPlanes& coarse) {
   const cv::Size size(fine.depth_m.cols / 2, fine.depth_m.rows / 2);
   for (cv::Mat* plane : {&coarse.depth_m, &coarse.normal[0], &coarse.normal[1], &coarse.normal[2],
                          &coarse.intensity, &coarse.support}) {
@@ -83,7 +84,7 @@ void halve(const ModelPlanes& fine, ModelPlanes& coarse) {
   }
   parallelFor(size.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < size.width; ++u) halvePixel(fine, u, v, coarse);
+      for (int u = 0; u < size.width; ++u) halvePixel(fine, sensor, u, v, coarse);
     }
   });
 }
@@ -124,10 +125,11 @@ void ModelPoints::assign(const PinholeCamera& camera, const ModelPlanes& planes)
   }
 }
 
-void ModelPyramid::assign(const ModelView& view, const FrameLevel* fill) {
+void ModelPyramid::assign(const ModelView& view, const DepthSensor& sensor,
+                          const FrameLevel* fill) {
   ModelPlanes& finest = planes_[0];
   if (fill != nullptr) {
-    fillFrom(*fill, view, finest);
+    fillFrom(*fill, view, sensor, finest);
   } else {
     finest = {
         view.depth_m, {view.normal_x, view.normal_y, view.normal_z}, view.intensity, view.support};
@@ -135,7 +137,7 @@ void ModelPyramid::assign(const ModelView& view, const FrameLevel* fill) {
   PinholeCamera camera = view.camera;
   for (int i = 0; i < kLevels; ++i) {
     if (i > 0) {
-      halve(planes_[i - 1], planes_[i]);
+      halve(planes_[i - 1], sensor, planes_[i]);
       camera = camera.shrunk(2);
     }
     levels_[i].assign(camera, planes_[i]);

@@ -62,7 +62,8 @@ NormalEquations buildNormalEquations(const ModelPoints& model, const FrameLevel&
       settings.robust_scale,
       settings.photometric_sigma > 0 ? 1.0F / settings.photometric_sigma : 0.0F,
       settings.brightness.gain,
-      settings.brightness.offset};
+      settings.brightness.offset,
+      settings.sensor};
   constexpr std::size_t lanes = ModelPoints::kLanes;
   const std::size_t groups = (model.count + lanes - 1) / lanes;
   const Sums sums =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "normal_equations_kernel.hpp"
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf::kernel {
@@ -110,7 +109,7 @@ POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group
     const float candidate = depth > 0 ? q.inside[l] : 0.0F;
     near[l] = distance2 < gates.max_distance * gates.max_distance ? candidate : 0.0F;
     const float inlier = cosine > gates.min_cosine ? near[l] : 0.0F;
-    const float sigma = depthSigma(depth);
+    const float sigma = gates.sensor.sigma(depth);
     const float x2 = r * r / (sigma * sigma);
     const float root = 1.0F / (1.0F + x2 * inverse_scale2);
     weight[l] = inlier * root * root * p.weight[i + l] / (sigma * sigma);

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "posefusion/core/depth_sensor.hpp"
+
 /// The inner loop of tracking on plain arrays: no Eigen, no OpenCV, so that it can be compiled once
 /// per instruction set (core/parallel.hpp).
 namespace pf::kernel {
@@ -25,6 +27,7 @@ struct Motion {
 struct Gates {
   float max_distance, min_cosine, robust_scale, inverse_photometric_sigma;
   float brightness_gain, brightness_offset;
+  DepthSensor sensor;
 };
 
 /// Places of the sums: 0-20 upper triangle of H, 21-26 g, then these.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "posefusion/core/noise.hpp"
 #include "surroundings.hpp"
 
 namespace pf {
@@ -17,13 +16,15 @@ constexpr int kMinNear = 6;  // with depth
 constexpr double kMinInlierShare = 0.35;
 constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
-constexpr float kRansacError_px = 2.5F;
+constexpr double kRansacError_flow_px = 1.25;
 constexpr int kMaxIterations = 10;
-constexpr double kCornerSigma_px = 0.3;  // of a corner's place, at full size
-// Corners without depth are mostly beyond the sensor's range. They tell of the turn, if little of
-// the shift, and are used only where there are few others.
-constexpr double kFar_m = 7.0;
-constexpr double kFarSigma_px = 2.0;
+// Standard deviation of a corner's place, in pixels of the images that flow is measured on: the
+// same angle in an image of any size.
+constexpr double kCornerSigma_flow_px = 0.15;
+// Corners without depth are mostly beyond the range of depth, by about so much. They tell of the
+// turn, if little of the shift, and are used only where there are few others.
+constexpr double kBeyond_m = 2.0;
+constexpr double kFarSigma_flow_px = 1.0;
 constexpr int kEnoughNear = 30;
 // Landmarks that were placed by poses gone astray agree less than this: the step from the frame
 // before may then be the better answer.
@@ -38,19 +39,22 @@ constexpr double kSharedRotation_rad = 0.0012;
 struct Sight {
   Eigen::Vector3d before;  ///< m, in the earlier camera's frame
   Eigen::Vector2d after_px;
-  double after_m = 0;   ///< depth in the later frame, 0 = not known
-  bool is_far = false;  ///< without depth: taken to lie beyond the sensor's range
+  double after_m = 0;        ///< depth in the later frame, 0 = not known
+  double after_sigma_m = 0;  ///< of that depth
+  bool is_far = false;       ///< without depth: taken to lie beyond the sensor's range
 };
 
 /// Does something stand at depth z (m) well before a stable surface of the map?
-bool isBeforeMap(const ModelView& view, const PinholeCamera& camera, const cv::Point2f& pixel,
+bool isBeforeMap(const FlowScene& scene, const PinholeCamera& camera, const cv::Point2f& pixel,
                  double z) {
+  if (scene.view == nullptr) return false;
+  const ModelView& view = *scene.view;
   const int u = static_cast<int>(pixel.x) * view.camera.width / camera.width;
   const int v = static_cast<int>(pixel.y) * view.camera.height / camera.height;
   if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) return false;
   const float known = view.depth_m.at<float>(v, u);
   const bool stable = known > 0 && (view.stable.empty() || view.stable.at<std::uint8_t>(v, u) != 0);
-  return stable && known - static_cast<float>(z) > 2.0F * surfaceTolerance(known, 5.0F);
+  return stable && known - static_cast<float>(z) > 2.0F * scene.sensor.tolerance(known, 5.0F);
 }
 
 /// `landmarks` may be null: then all places come from the earlier frame's depth.
@@ -58,19 +62,21 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
                             const Landmarks* landmarks, const PinholeCamera& camera) {
   std::vector<Sight> sights;
   const Surroundings surroundings(scene.before_m, scene.before_still);
+  const double far_m = scene.sensor.max_depth_m + kBeyond_m;
   const Eigen::Isometry3d T_before_map = scene.T_map_before.inverse();
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
     const cv::Point2f &a = flow.before[i], &b = flow.after[i];
     const Landmark* known = landmarks == nullptr ? nullptr : landmarks->find(flow.ids[i]);
     if (known != nullptr && !known->isBelieved()) continue;
     if (known == nullptr && scene.before_m.empty()) continue;
-    const double z = scene.before_m.empty() ? 0.0 : smoothDepthAt(scene.before_m, a);
-    if (z > 0 && scene.view != nullptr && isBeforeMap(*scene.view, camera, a, z)) continue;
-    Sight sight{camera.unproject(a.x, a.y, z > 0 ? z : kFar_m), {b.x, b.y}};
+    const double z = scene.before_m.empty() ? 0.0 : smoothDepthAt(scene.before_m, scene.sensor, a);
+    if (z > 0 && isBeforeMap(scene, camera, a, z)) continue;
+    Sight sight{camera.unproject(a.x, a.y, z > 0 ? z : far_m), {b.x, b.y}};
     if (known != nullptr) sight.before = T_before_map * known->at;
     sight.is_far = known == nullptr && z <= 0;
     if (sight.is_far && !surroundings.areOpen(a)) continue;
-    if (!sight.is_far) sight.after_m = smoothDepthAt(scene.after_m, b);
+    if (!sight.is_far) sight.after_m = smoothDepthAt(scene.after_m, scene.sensor, b);
+    sight.after_sigma_m = scene.sensor.sigma(static_cast<float>(sight.after_m));
     sights.push_back(sight);
   }
   return sights;
@@ -86,10 +92,11 @@ bool guess(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
     pixels.emplace_back(l.after_px.x(), l.after_px.y());
   }
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  const auto error_px = static_cast<float>(kRansacError_flow_px * flowPixel(camera.width));
   cv::Vec3d turn, shift;
   const auto ransac = [&](int method) {
     return cv::solvePnPRansac(points, pixels, K, cv::noArray(), turn, shift, false,
-                              kRansacIterations, kRansacError_px, kRansacConfidence, cv::noArray(),
+                              kRansacIterations, error_px, kRansacConfidence, cv::noArray(),
                               method);
   };
   // P3P finds no solution for some sets of points, EPnP needs two more of each set.
@@ -118,12 +125,13 @@ void add(const Eigen::Matrix<double, 1, 6>& J, double r, double weight, System& 
 /// For the twist of T_after_before (update exp(twist) * T).
 System build(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
              const Eigen::Isometry3d& T) {
+  const double flow_px = flowPixel(camera.width);
   System system;
   for (const Sight& l : landmarks) {
     const Eigen::Vector3d q = T * l.before;
     if (q.z() < 0.1) continue;
     const double iz = 1.0 / q.z();
-    const double sigma_px = l.is_far ? kFarSigma_px : kCornerSigma_px;
+    const double sigma_px = flow_px * (l.is_far ? kFarSigma_flow_px : kCornerSigma_flow_px);
     const Eigen::Vector2d error = (camera.project(q) - l.after_px) / sigma_px;
     Eigen::Matrix<double, 3, 6> dq;
     dq << Eigen::Matrix3d::Identity(), -hat(q);
@@ -133,7 +141,7 @@ System build(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
     double depth_error = 0, depth_sigma = 1;
     if (l.after_m > 0) {
       // Both depths are measured; the mean of nine pixels halves the noise, edges add to it.
-      depth_sigma = 1.4 * depthSigma(static_cast<float>(l.after_m));
+      depth_sigma = 1.4 * l.after_sigma_m;
       depth_error = (q.z() - l.after_m) / depth_sigma;
     }
     const double distance2 = error.squaredNorm() + depth_error * depth_error;

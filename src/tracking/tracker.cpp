@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/noise.hpp"
 #include "posefusion/tracking/normal_equations.hpp"
 
 namespace pf {
@@ -20,12 +19,15 @@ constexpr int kMaxHalvings = 3;
 constexpr double kCostNoise = 0.01;
 // Residuals of so many standard deviations keep a quarter of their weight on the finest level.
 constexpr float kRobustScale = 3.0F;
-// Residuals of pixels near each other, and of one frame, go together (the sensor's distortion, the
-// map's ripples): so many pixels of the finest level say as much as one independent measurement.
-constexpr double kPixelsPerMeasurement = 600.0;
+// Residuals of what is seen close together, and of one frame, go together (the sensor's distortion,
+// the map's ripples): so large a part of what is seen (sr) says as much as one independent
+// measurement, in however many pixels. 600 of them in a Kinect's picture at half its size.
+constexpr double kHalfKinectFocal_px = 262.5;
+constexpr double kMeasurement_sr = 600.0 / (kHalfKinectFocal_px * kHalfKinectFocal_px);
 // Error of a normal (rad) per relative error of depth: a normal comes from some pixels'
 // differences. Directions with less information than its square times that of the best-known one
-// are fixed by noise alone.
+// are fixed by noise alone. The same for pictures of any size: scaled by the angle of a pixel it
+// found free directions at 1280 pixels across where there were none at 320 and 640.
 constexpr double kNormalNoise = 14.0;
 // Without a measured prior there is nothing better to decide: only what is plainly free counts as
 // free.
@@ -41,6 +43,7 @@ struct Prior {
   Matrix6d information;
   bool is_firm;
   double normal_noise;  ///< see kNormalNoise
+  DepthSensor sensor;
 };
 
 /// What the images say of the pose, with noise taken out.
@@ -51,13 +54,13 @@ struct ImageSystem {
 };
 
 /// Leaves of the images' equations only what is more than noise; see kNormalNoise.
-ImageSystem withoutNoise(const NormalEquations& e, double share, double noise) {
+ImageSystem withoutNoise(const NormalEquations& e, double share, const Prior& prior) {
   const Matrix6d H = e.hessian();
   // The scene's distance: a turn moves it by this times the angle.
   const double lever_m = std::max(kMinLeverArm_m, std::sqrt(H.bottomRightCorner<3, 3>().trace() /
                                                             H.topLeftCorner<3, 3>().trace()));
-  const double normal_noise =
-      std::min(kMaxNormalNoise_rad, noise * depthSigma(static_cast<float>(lever_m)) / lever_m);
+  const double sigma_m = prior.sensor.sigma(static_cast<float>(lever_m));
+  const double normal_noise = std::min(kMaxNormalNoise_rad, prior.normal_noise * sigma_m / lever_m);
   Vector6d scale = Vector6d::Ones();
   scale.tail<3>().setConstant(1.0 / lever_m);
   const Matrix6d S = scale.asDiagonal();
@@ -103,7 +106,7 @@ struct PoseSystem {
 PoseSystem combine(const NormalEquations& e, double share, const Prior& prior,
                    const Eigen::Isometry3d& T_frame_view) {
   const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
-  const ImageSystem images = withoutNoise(e, share, prior.normal_noise);
+  const ImageSystem images = withoutNoise(e, share, prior);
   PoseSystem system;
   system.free_directions = images.free_directions;
   system.prior_weight = weightOf(prior, images, error);
@@ -212,15 +215,18 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   a.settings.min_normal_cosine = static_cast<float>(std::cos(config.max_normal_angle_rad));
   a.settings.photometric_sigma = static_cast<float>(config.photometric_sigma);
   a.settings.brightness = start.brightness;
+  a.settings.sensor = frame.sensor;
   a.T_frame_view = start.T_map_camera.inverse() * start.T_map_view;
   const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
                     start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm,
-                    start.prior.is_measured ? kNormalNoise : kBlindNormalNoise};
+                    start.prior.is_measured ? kNormalNoise : kBlindNormalNoise, frame.sensor};
+  const PinholeCamera& finest = frame.levels[0].camera;
+  const double pixels_per_measurement = kMeasurement_sr * finest.fx * finest.fy;
   double share = 1.0;
   for (int i = kLevels - 1; i >= 0; --i) {
     // Coarse levels start further away: what is an outlier there may be an inlier later.
     a.settings.robust_scale = kRobustScale * static_cast<float>(1 << i);
-    share = static_cast<double>(1 << (2 * i)) / kPixelsPerMeasurement;
+    share = static_cast<double>(1 << (2 * i)) / pixels_per_measurement;
     alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
   return resultOf(a, share, prior, start.T_map_view);

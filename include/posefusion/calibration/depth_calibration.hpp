@@ -16,6 +16,7 @@ struct DepthCalibration {
   DepthField field;
   std::size_t keyframes = 0, pairs = 0;  ///< that it was learned from
   double before_mm = 0, after_mm = 0;    ///< median residual of pairs that were kept out
+  double left_per_m = 0;  ///< standard deviation of what the field leaves (1/m); 0: not known
 };
 
 /// Why a calibration does not hold for images of this camera: a ray would meet the field more than

@@ -42,8 +42,15 @@ struct FieldEstimate {
   std::size_t views = 0, pairs = 0, residuals = 0;  ///< learned from
   double rest_per_m = 0;                            ///< that the field leaves unexplained
   KeptOut kept_out;
-  bool worth_taking = false;
-  std::string reason;  ///< why it is not worth taking, or why there is no estimate
+  bool worth_taking = false;  ///< by a camera of which nothing was known
+  std::string reason;         ///< why it is not worth taking, or why there is no estimate
+
+  /// Why it is not worth taking as a step of a field that is in use: that the camera is off is no
+  /// question any more, only whether pairs that were kept out agree better. Empty: it is.
+  std::string doubtOfStep() const;
+
+  /// What the field is off by itself (1/m), by all that is not said by its covariance too.
+  double left_per_m() const;
 };
 
 /// Estimates the field of a camera from keyframes whose poses are known well (loops are closed):

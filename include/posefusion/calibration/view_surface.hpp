@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/map_pose.hpp"
 
 namespace pf {
@@ -17,6 +18,7 @@ struct CalibrationView {
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   int fragment = kFirstFragment;  ///< of the map, that the pose is in
   cv::Mat depth_mm;               ///< CV_16UC1, 0 = none; people are out of it
+  DepthSensor sensor{};           ///< that took it
 };
 
 /// A piece of plane, fitted to a small window of a depth image. Planes are linear in inverse depth:

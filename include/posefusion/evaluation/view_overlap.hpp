@@ -7,9 +7,10 @@
 
 namespace pf {
 
-/// How much of what a frame sees is in a map: the share of the pixels with depth (0 to 5 m) where
+/// How much of what a frame sees is in a map: the share of the pixels with depth (up to the range
+/// of the map's sensor) where
 /// the map, drawn from the frame's true pose, has a stable surface at the same depth, within 5 cm
-/// and three standard deviations of the sensor's noise.
+/// and three standard deviations of its noise.
 class ViewOverlap {
  public:
   /// The map must outlive it. Its active surfels do not matter: all are drawn.

@@ -4,27 +4,28 @@
 #include <opencv2/core.hpp>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 
 namespace pf {
 
 /// Depth images here are CV_32FC1 in metres, 0 = invalid. Every function writes into its last
 /// arguments, reusing their memory, and gives the same bits for any number of threads. Means are
 /// taken of the inverse depth: planes are linear in it, so that leaning surfaces are not moved, and
-/// the noise of a structured-light sensor is even in it.
+/// the noise of structured light and stereo is even in it. What lies on one surface is told by the
+/// noise of the sensor.
 
 /// Each block of factor x factor pixels becomes the mean of those of its valid pixels that lie on
 /// the nearest surface in it: silhouettes are kept, noise falls.
-void shrinkDepth(const cv::Mat& depth_m, int factor, cv::Mat& small_m);
+void shrinkDepth(const cv::Mat& depth_m, int factor, const DepthSensor& sensor, cv::Mat& small_m);
 
 /// Edge-preserving smoothing over 7x7 pixels. The range kernel is Tukey's biweight with a width
-/// that follows the sensor noise (depth_noise.hpp), so that a step of the scene survives at any
-/// distance.
-void smoothDepth(const cv::Mat& depth_m, cv::Mat& smooth_m);
+/// that follows the sensor's noise, so that a step of the scene survives at any distance.
+void smoothDepth(const cv::Mat& depth_m, const DepthSensor& sensor, cv::Mat& smooth_m);
 
 /// Unit normals towards the camera by central differences; all three 0 where a neighbour is missing
 /// or lies on another surface.
-void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, cv::Mat& normal_x,
-                    cv::Mat& normal_y, cv::Mat& normal_z);
+void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, const DepthSensor& sensor,
+                    cv::Mat& normal_x, cv::Mat& normal_y, cv::Mat& normal_z);
 
 /// Grey levels 0..255 (CV_32FC1) of an R G B image, each pixel the mean of a factor x factor block.
 void shrinkToIntensity(const cv::Mat& color, int factor, cv::Mat& intensity);

@@ -9,6 +9,15 @@
 
 namespace pf {
 
+/// Flow is measured on images of this width (pixels), or of the frame's where that is less: what
+/// corners are known to goes by their pixels.
+constexpr int kFlowWidth = 320;
+
+/// How many pixels of an image so wide (at least one) are one of its flow.
+inline double flowPixel(int width) {
+  return width > kFlowWidth ? static_cast<double>(width) / kFlowWidth : 1.0;
+}
+
 /// Corners of one frame found again in the next, in pixels of the full image.
 struct SparseFlow {
   std::int64_t from_ns = 0;  ///< stamp of the earlier frame
@@ -26,7 +35,7 @@ struct FollowedPoints {
 };
 
 /// Sparse optical flow between successive frames (pyramidal Lucas and Kanade; Bouguet 2001) on
-/// half-size grey images: of corners (Shi and Tomasi 1994), which tell how the camera moved, and of
+/// small grey images: of corners (Shi and Tomasi 1994), which tell how the camera moved, and of
 /// any other points, which tell how people did. The images are prepared once for both; slow changes
 /// of brightness are taken out of them. Not thread safe.
 class FlowTracker {

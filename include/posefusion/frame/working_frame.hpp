@@ -4,6 +4,7 @@
 #include <array>
 #include <opencv2/core.hpp>
 
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/frame.hpp"
 #include "posefusion/frame/config.hpp"
 
@@ -23,6 +24,7 @@ struct FrameLevel {
 /// A frame as tracking and fusion see it: shrunk, smoothed, with normals, as a pyramid.
 struct WorkingFrame {
   PinholeCamera camera;
+  DepthSensor sensor;                      ///< that took it, in the range that is used
   cv::Mat depth_m;                         ///< CV_32FC1, shrunk but not smoothed: what is fused
   cv::Mat beyond_m;                        ///< CV_32FC1, depth past max_depth_m, 0 = none
   cv::Mat color;                           ///< CV_8UC3 R G B
@@ -31,8 +33,10 @@ struct WorkingFrame {
   PinholeCamera full_camera;
   cv::Mat full_depth_m;  ///< CV_32FC1, full size, 0 = invalid
 
-  /// Prepares everything from a frame; `mask` (255 = person) may be empty. Reuses memory.
-  void assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config);
+  /// Prepares everything from a frame; `mask` (255 = person) may be empty. The range is that of
+  /// `config`. Reuses memory.
+  void assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config,
+              const DepthSensor& taken_by = {});
 
   /// A copy that shares no memory with this one.
   WorkingFrame clone() const;

@@ -44,6 +44,10 @@ class FrameSource {
   /// True poses recorded with it; empty when there are none.
   virtual Trajectory truth() { return {}; }
 
+  /// The kind of depth camera that it says it was taken by, one of sensorKinds(); empty: it does
+  /// not say.
+  virtual std::string sensorKind() const { return {}; }
+
   virtual InputReport report() const { return {}; }
 };
 

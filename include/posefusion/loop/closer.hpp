@@ -43,7 +43,8 @@ struct LoopCounts {
 /// thread safe.
 class LoopCloser {
  public:
-  LoopCloser(const LoopConfig& config, const TrackingConfig& tracking);
+  /// `sensor`: that took all keyframes.
+  LoopCloser(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor);
 
   /// Ids rise. Ferns are stored by their rules, the view in any case.
   void addKeyframe(const KeyframeView& view);
@@ -92,6 +93,7 @@ class LoopCloser {
   std::optional<LoopConstraint> verify(std::int64_t id, const Eigen::Isometry3d& T_from_to_guess);
 
   LoopConfig config_;
+  DepthSensor sensor_;
   PairAligner aligner_;
   KeyframePicture from_, to_;  ///< a candidate, and the last keyframe
   std::deque<Keyframe> keyframes_;

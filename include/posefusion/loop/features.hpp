@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 
 namespace pf {
 
@@ -43,7 +44,8 @@ struct FeatureMatch {
 /// Descriptors that are each other's nearest, and much nearer than the second; of those the rigid
 /// motion that most agree with (RANSAC over three pairs, Fischler and Bolles 1981, fixed seed; Horn
 /// 1987 over the inliers). Found with a dozen inliers; may still be wrong where things repeat.
-FeatureMatch matchFeatures(const Features& first, const Features& second);
+FeatureMatch matchFeatures(const Features& first, const Features& second,
+                           const DepthSensor& sensor);
 
 std::string toBytes(const Features& features);
 /// Throws InputError telling what is wrong with the bytes.

@@ -28,7 +28,8 @@ struct KeyframePicture {
   ModelView model;      ///< in the frame's own camera frame
   ModelPyramid points;  ///< of the model
 
-  void assign(const KeyframeView& view);
+  /// `sensor`: that took it.
+  void assign(const KeyframeView& view, const DepthSensor& sensor);
 };
 
 /// Depth, normals and grey levels of a model view as seen from another pose (in the frame of the

@@ -22,6 +22,7 @@ struct SeenFloor {
 /// A small frame to look for in the map, about 40x30 pixels, people left out.
 struct PlaceQuery {
   PinholeCamera camera;
+  DepthSensor sensor;
   cv::Mat depth_m;                 ///< CV_32FC1, 0 = nothing known
   cv::Mat intensity;               ///< CV_32FC1, 0..255
   cv::Mat facing;                  ///< CV_32FC1, cosine between ray and normal, 0 = nothing known
@@ -41,8 +42,8 @@ struct PlaceSearchConfig {
   double step_m = 0.15;
   int headings = 48;                                   ///< of a full turn
   std::vector<double> heights_m = {-0.12, 0.0, 0.12};  ///< above that of the last pose
-  double max_range_m = 6.0;                            ///< farther points are not looked at
-  int most = 50;                                       ///< candidates
+  double max_range_m = 0;  ///< farther points are not looked at; 0: by the range of the sensor
+  int most = 50;           ///< candidates
 };
 
 /// The search 3 m each way, for a map that has just been loaded.

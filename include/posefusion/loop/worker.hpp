@@ -38,6 +38,7 @@ struct LoopQuestion {
   std::shared_ptr<const PlaceQuestion> place;
   /// How often the depth of the keyframes has been corrected by what was learned.
   int depth_version = 0;
+  bool is_corrected = false;  ///< the depth of the keyframes is, by what is known of the camera
   /// Constraints between known keyframes that are to be measured anew, as their depth has changed.
   std::vector<PoseConstraint> remeasured{};
   bool calibrates = false;  ///< asked for: the camera's field is estimated now
@@ -65,7 +66,7 @@ struct LoopAnswer {
 /// beside the mapper.
 class LoopWorker {
  public:
-  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking,
+  LoopWorker(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor,
              const CalibrationConfig& calibration = {});
 
   LoopAnswer answer(const LoopQuestion& question);
@@ -90,6 +91,7 @@ class LoopWorker {
 
   LoopConfig config_;
   TrackingConfig tracking_;
+  DepthSensor sensor_;
   CalibrationConfig calibration_;
   LoopCloser closer_;
   FieldLearner learner_;

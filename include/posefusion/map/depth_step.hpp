@@ -5,6 +5,7 @@
 
 #include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/graph/keyframe.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
@@ -18,9 +19,12 @@ struct DepthStep {
   DepthField field;  ///< added to what depth was corrected by (1/m)
   PinholeCamera camera;
   std::vector<Keyframe> keyframes;
+  DepthSensor sensor{};
+  double left_per_m = 0;  ///< standard deviation of what is still not known (1/m)
 };
 
-/// Moves each surfel, position, normal and radius, by the keyframe of its fragment that was taken
+/// Moves each surfel, position, normal and radius, and lowers its weight to what is then known of
+/// it, by the keyframe of its fragment that was taken
 /// last when it was made (the first, for what is older). Behind a camera, or without a keyframe, it
 /// stays. The result does not depend on the number of threads.
 void correctDepth(SurfelMap& map, const DepthStep& step);

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/map/config.hpp"
 #include "posefusion/map/surfels.hpp"
 
@@ -37,10 +38,14 @@ class SurfelMap {
   /// smaller ones cost more to visit than they save, larger ones reach too far out of view.
   static constexpr float kBlockSide_m = 0.5F;
 
-  explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSide_m)
-      : config_(config), block_side_m_(block_side_m) {}
+  explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSide_m,
+                     const DepthSensor& sensor = {})
+      : config_(config), sensor_(sensor), block_side_m_(block_side_m) {}
 
   const MapConfig& config() const { return config_; }
+
+  /// That measures the surfels: how far apart those of one surface may be.
+  const DepthSensor& sensor() const { return sensor_; }
 
   /// Number of the last fused frame, from 0; -1 while the map is empty.
   int frame() const { return frame_; }
@@ -168,6 +173,7 @@ class SurfelMap {
   void keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& block) const;
 
   MapConfig config_;
+  DepthSensor sensor_;
   float block_side_m_;
   std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
   std::unordered_map<Cell, std::uint32_t, CellHash> index_;

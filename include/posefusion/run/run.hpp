@@ -13,6 +13,9 @@ namespace pf {
 /// bad_input then). Return false to stop.
 using FrameDone = std::function<bool(const ProcessedFrame& frame, const std::string& defect)>;
 
+/// The settings, with the kind of depth camera that the recording names where they leave it open.
+Config configFor(Config config, const FrameSource& source);
+
 /// Runs the chain over a recording on three threads: reading and decoding ahead, Pipeline::see()
 /// ahead, Pipeline::map() and `done` in the caller's. The result is that of one thread, to the bit.
 /// What any of them throws is thrown here, after `done` has seen all frames before it.

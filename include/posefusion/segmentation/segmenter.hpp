@@ -14,6 +14,9 @@
 
 namespace pf {
 
+/// Nobody farther (m) is looked for: depth cameras tell no person from a wall there.
+constexpr double kFarthestPerson_m = 8.0;
+
 /// A frame without its people.
 struct Segmentation {
   cv::Mat mask;          ///< CV_8UC1, frame size, 255 = person; empty when there is none

@@ -9,6 +9,7 @@
 #include "posefusion/calibration/config.hpp"
 #include "posefusion/config/fields.hpp"
 #include "posefusion/frame/config.hpp"
+#include "posefusion/frame/sensor_config.hpp"
 #include "posefusion/graph/config.hpp"
 #include "posefusion/loop/config.hpp"
 #include "posefusion/map/config.hpp"
@@ -28,6 +29,7 @@ struct Config {
   BlurConfig blur;
   PoseConfig pose;
   SegmentationConfig segmentation;
+  SensorConfig sensor;
   FrameConfig frame;
   TrackingConfig tracking;
   MapConfig map;
@@ -35,6 +37,11 @@ struct Config {
   GraphConfig graph;
   CalibrationConfig calibration;
 };
+
+/// The depth camera of the settings. Throws InputError as depthSensorOf() does.
+inline DepthSensor depthSensorOf(const Config& config) {
+  return depthSensorOf(config.sensor, config.frame);
+}
 
 /// Lists all fields in order, grouped by stage.
 void visitFields(Config& config, FieldVisitor& visitor);

@@ -7,13 +7,21 @@
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/frame/flow.hpp"
 
 namespace pf {
 
+/// The depth of a frame, and what took it.
+struct DepthPicture {
+  const cv::Mat& depth_m;  ///< CV_32FC1, 0 = invalid
+  const PinholeCamera& camera;
+  DepthSensor sensor{};
+};
+
 /// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
 /// allowed: dark and bright things return little. `depth_m`: CV_32FC1, 0 = invalid.
-double smoothDepthAt(const cv::Mat& depth_m, const cv::Point2f& pixel);
+double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel);
 
 /// A corner of the world in space, for as long as it is followed.
 struct Landmark {
@@ -35,7 +43,7 @@ class Landmarks {
 
   /// Takes in where a frame at a known pose sees its corners; corners no longer followed are
   /// forgotten. Known landmarks move only by frames whose pose is `believed`.
-  void update(const SparseFlow& flow, const cv::Mat& depth_m, const PinholeCamera& camera,
+  void update(const SparseFlow& flow, const DepthPicture& seen,
               const Eigen::Isometry3d& T_map_camera, bool believed);
 
   /// Follows a correction of the map frame.

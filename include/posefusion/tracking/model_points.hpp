@@ -34,8 +34,8 @@ class ModelPyramid {
  public:
   /// `fill`: finest level of the frame that was fused at the view's pose; it stands in, with little
   /// weight, where the view shows nothing or something well behind. Null where there is none.
-  /// Reuses memory.
-  void assign(const ModelView& view, const FrameLevel* fill = nullptr);
+  /// Reuses memory. `sensor`: by whose noise depths are told to be of one surface.
+  void assign(const ModelView& view, const DepthSensor& sensor, const FrameLevel* fill = nullptr);
   const ModelPoints& level(int i) const { return levels_[i]; }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/frame/working_frame.hpp"
 #include "posefusion/tracking/model_points.hpp"
@@ -22,6 +23,7 @@ struct TermSettings {
   float robust_scale = 3.0F;        ///< standard deviations at which a residual's weight is 1/4
   float photometric_sigma = 12.0F;  ///< grey levels; 0 = no photometric term
   Brightness brightness;            ///< of the frame against the model
+  DepthSensor sensor;               ///< of the frame
 };
 
 /// Sums over the pairs of model points and frame pixels: H = sum w J'J, g = sum w J'r for the twist

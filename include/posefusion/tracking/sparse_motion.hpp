@@ -31,6 +31,7 @@ struct FlowScene {
   Eigen::Isometry3d T_map_before = Eigen::Isometry3d::Identity();  ///< pose of the earlier frame
   /// The earlier frame, any size: CV_8UC1, 0 = a person's pixel. Empty: nobody is in view.
   cv::Mat before_still{};
+  DepthSensor sensor{};
 };
 
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
