@@ -7,11 +7,11 @@
 namespace pf {
 namespace {
 
-// Depth around a corner is the mean of what lies so many pixels of its flow around it, of which
-// this share must be there.
-constexpr double kReach_flow_px = 1.0, kMinDepths = 0.12;
-// A corner that is elsewhere by more than this (pixels of its flow) in some frames moves by itself.
-constexpr double kMissed_flow_px = 1.5;
+// Depth around a corner is the mean of what lies so many cornerPixel() around it, of which this
+// share must be there.
+constexpr double kReach = 2.0, kMinDepths = 0.12;
+// A corner that is elsewhere by more than this (cornerPixel()) in some frames moves by itself.
+constexpr double kMissed = 3.0;
 constexpr float kMissedSigmas = 5.0F;
 constexpr int kMostMisses = 3;
 // The mean forgets what is older than about so many frames: the place follows the map as fusion
@@ -23,7 +23,7 @@ bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
             const DepthPicture& seen) {
   if (expected.z() < 0.1) return false;
   const Eigen::Vector2d error = seen.camera.project(expected) - Eigen::Vector2d(pixel.x, pixel.y);
-  return error.norm() < kMissed_flow_px * flowPixel(seen.camera.width) &&
+  return error.norm() < kMissed * cornerPixel(seen.camera.width) &&
          std::abs(expected.z() - z) < seen.sensor.tolerance(static_cast<float>(z), kMissedSigmas);
 }
 
@@ -31,7 +31,7 @@ bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
 
 double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel) {
   const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
-  const int reach = static_cast<int>(std::lround(kReach_flow_px * flowPixel(depth_m.cols)));
+  const int reach = static_cast<int>(std::lround(kReach * cornerPixel(depth_m.cols)));
   const int first_u = std::max(0, u - reach), last_u = std::min(depth_m.cols - 1, u + reach);
   const int first_v = std::max(0, v - reach), last_v = std::min(depth_m.rows - 1, v + reach);
   float least = 1e9F, most = 0.0F, sum = 0.0F;

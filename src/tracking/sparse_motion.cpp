@@ -16,15 +16,15 @@ constexpr int kMinNear = 6;  // with depth
 constexpr double kMinInlierShare = 0.35;
 constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
-constexpr double kRansacError_flow_px = 1.25;
+constexpr double kRansacError = 2.5;
 constexpr int kMaxIterations = 10;
-// Standard deviation of a corner's place, in pixels of the images that flow is measured on: the
-// same angle in an image of any size.
-constexpr double kCornerSigma_flow_px = 0.15;
+// Standard deviation of a corner's place; this and the other errors of places are in cornerPixel():
+// the same angle in images of any size, as far as those have the pixels.
+constexpr double kCornerSigma = 0.3;
 // Corners without depth are mostly beyond the range of depth, by about so much. They tell of the
 // turn, if little of the shift, and are used only where there are few others.
 constexpr double kBeyond_m = 2.0;
-constexpr double kFarSigma_flow_px = 1.0;
+constexpr double kFarSigma = 2.0;
 constexpr int kEnoughNear = 30;
 // Landmarks that were placed by poses gone astray agree less than this: the step from the frame
 // before may then be the better answer.
@@ -92,7 +92,7 @@ bool guess(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
     pixels.emplace_back(l.after_px.x(), l.after_px.y());
   }
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
-  const auto error_px = static_cast<float>(kRansacError_flow_px * flowPixel(camera.width));
+  const auto error_px = static_cast<float>(kRansacError * cornerPixel(camera.width));
   cv::Vec3d turn, shift;
   const auto ransac = [&](int method) {
     return cv::solvePnPRansac(points, pixels, K, cv::noArray(), turn, shift, false,
@@ -125,13 +125,13 @@ void add(const Eigen::Matrix<double, 1, 6>& J, double r, double weight, System& 
 /// For the twist of T_after_before (update exp(twist) * T).
 System build(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
              const Eigen::Isometry3d& T) {
-  const double flow_px = flowPixel(camera.width);
+  const double corner_px = cornerPixel(camera.width);
   System system;
   for (const Sight& l : landmarks) {
     const Eigen::Vector3d q = T * l.before;
     if (q.z() < 0.1) continue;
     const double iz = 1.0 / q.z();
-    const double sigma_px = flow_px * (l.is_far ? kFarSigma_flow_px : kCornerSigma_flow_px);
+    const double sigma_px = corner_px * (l.is_far ? kFarSigma : kCornerSigma);
     const Eigen::Vector2d error = (camera.project(q) - l.after_px) / sigma_px;
     Eigen::Matrix<double, 3, 6> dq;
     dq << Eigen::Matrix3d::Identity(), -hat(q);

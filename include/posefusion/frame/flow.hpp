@@ -9,13 +9,14 @@
 
 namespace pf {
 
-/// Flow is measured on images of this width (pixels), or of the frame's where that is less: what
-/// corners are known to goes by their pixels.
+/// Flow is measured on images of this width (pixels), or of the frame's where that is less.
 constexpr int kFlowWidth = 320;
 
-/// How many pixels of an image so wide (at least one) are one of its flow.
-inline double flowPixel(int width) {
-  return width > kFlowWidth ? static_cast<double>(width) / kFlowWidth : 1.0;
+/// What corners are known to goes by half a pixel of those images, but not below a pixel of the
+/// frame: how many pixels of a frame so wide that is. Measured, corners are off by 0.23 of it at
+/// widths of 320, 640 and 1280.
+inline double cornerPixel(int width) {
+  return width > 2 * kFlowWidth ? static_cast<double>(width) / (2 * kFlowWidth) : 1.0;
 }
 
 /// Corners of one frame found again in the next, in pixels of the full image.
