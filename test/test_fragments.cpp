@@ -23,8 +23,7 @@ const SimulatedSequence& room() { return exactBox<kMapped>(); }
 struct Carried {
   explicit Carried(const Config& config, bool with_closer, double uncovered = 1.0)
       : mapper_(config) {
-    if (with_closer)
-      loops_.emplace(config.loop, config.tracking, DepthSensor{}, AnswerTime::after_lag);
+    if (with_closer) loops_.emplace(config, AnswerTime::after_lag);
     for (int i = 0; i < kMapped / 2; ++i) see(i);
     surfels_ = stableAtHome();
     for (int i = 0; i < kCovered; ++i) see(kMapped / 2, 0);
@@ -129,7 +128,7 @@ TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
   ASSERT_EQ(run.status_.state, TrackingState::tracking);
   ASSERT_EQ(run.status_.fragment, 1) << "it is back where it was lost";
   const Config config = Carried::config();
-  run.loops_.emplace(config.loop, config.tracking, DepthSensor{}, AnswerTime::after_lag);
+  run.loops_.emplace(config, AnswerTime::after_lag);
   run.mapper_.introduceCloser();
   for (int i = 40; i >= 0; --i) run.see(i);
   for (int i = 0; i < 40; ++i) run.see(i);

@@ -47,7 +47,7 @@ Carried carry(const std::optional<AnswerTime>& closer) {
   config.frame.shrink = 1;
   Mapper mapper(config);
   std::optional<LoopThread> loops;
-  if (closer) loops.emplace(config.loop, config.tracking, DepthSensor{}, *closer);
+  if (closer) loops.emplace(config, *closer);
   std::int64_t stamp_ns = 0;
   Carried carried;
   const auto see = [&](int index, bool covered) {

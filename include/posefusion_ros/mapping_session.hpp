@@ -77,6 +77,7 @@ class MappingSession {
   void clear();
 
   pf::Config config_;
+  bool is_lossless_;
   std::optional<pf::DepthCalibration> calibration_;  // of the camera, where it is known
   MapSaver saver_;
   std::unique_ptr<pf::Mapper> mapper_;

@@ -7,6 +7,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/loop/dense_pairs.hpp"
 
 namespace pf {
 namespace {
@@ -44,7 +45,11 @@ std::size_t LoopCounts::allRefused() const {
 
 LoopCloser::LoopCloser(const LoopConfig& config, const TrackingConfig& tracking,
                        const DepthSensor& sensor)
-    : config_(config), sensor_(sensor), aligner_(tracking), ferns_(fernConfig(config, sensor)) {}
+    : config_(config),
+      tracking_(tracking),
+      sensor_(sensor),
+      aligner_(tracking),
+      ferns_(fernConfig(config, sensor)) {}
 
 void LoopCloser::addKeyframe(const KeyframeView& view) {
   if (!keyframes_.empty() && view.id <= keyframes_.back().view.id) {
@@ -165,25 +170,11 @@ std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id,
   return LoopConstraint{id, keyframes_.back().view.id, T, forth.alignment.covariance};
 }
 
-std::vector<PoseConstraint> LoopCloser::remeasure(const std::vector<PoseConstraint>& constraints) {
-  const auto viewOf = [&](int id) -> const KeyframeView* {
-    const auto found =
-        std::lower_bound(keyframes_.begin(), keyframes_.end(), id,
-                         [](const Keyframe& k, int number) { return k.view.id < number; });
-    return found != keyframes_.end() && found->view.id == id ? &found->view : nullptr;
-  };
-  std::vector<PoseConstraint> measured;
-  for (const PoseConstraint& c : constraints) {
-    const KeyframeView *from = viewOf(c.from), *to = viewOf(c.to);
-    if (from == nullptr || to == nullptr) continue;
-    from_.assign(*from, sensor_);
-    to_.assign(*to, sensor_);
-    const PlaceVerdict verdict = aligner_.align(from_, to_, c.T_from_to);
-    if (!verdict.accepted()) continue;
-    measured.push_back(
-        {c.from, c.to, verdict.alignment.T_map_camera, verdict.alignment.covariance, c.kind});
-  }
-  return measured;
+std::vector<PoseConstraint> LoopCloser::remeasure(
+    const std::vector<PoseConstraint>& constraints) const {
+  std::vector<const KeyframeView*> views;
+  for (const Keyframe& keyframe : keyframes_) views.push_back(&keyframe.view);
+  return measurePairs(views, constraints, tracking_, sensor_);
 }
 
 std::vector<LoopConstraint> LoopCloser::findLoops() {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "posefusion/core/stopwatch.hpp"
+#include "posefusion/loop/dense_pairs.hpp"
 
 namespace pf {
 namespace {
@@ -76,14 +77,7 @@ void LoopWorker::begin() {
 void LoopWorker::addKeyframe(const KeyframeView& view) {
   closer_.addKeyframe(view);
   if (!calibration_.learns()) return;
-  CalibrationView seen;
-  seen.id = static_cast<int>(view.id);
-  seen.camera = view.camera;
-  seen.T_map_camera = view.pose.T_map_camera;
-  seen.fragment = view.pose.fragment;
-  seen.depth_mm = view.depth_mm;
-  seen.sensor = sensor_;
-  learner_.add(seen);
+  learner_.add(calibrationView(view, sensor_));
 }
 
 void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {

@@ -42,6 +42,7 @@ MappingSettings readMapping(Parameters& parameters) {
 MappingSession::MappingSession(const MappingSettings& settings,
                                std::unique_ptr<pf::LoopResponder> closer)
     : config_(settings.config),
+      is_lossless_(settings.lossless),
       saver_(settings.saver),
       mapper_(std::make_unique<pf::Mapper>(settings.config)),
       loops_(settings.config.loop.answer_lag_frames, answerTime(settings.lossless),
@@ -160,6 +161,7 @@ std::string MappingSession::restartClock(std::string& unsaved) {
 std::string MappingSession::finish() {
   try {
     loops_.finish(*mapper_);
+    if (is_lossless_ && config_.loop.enabled && config_.loop.refine_at_end) mapper_->refine();
   } catch (const std::exception&) {  // what it still had to say
   }
   return saver_.finish(toSave());

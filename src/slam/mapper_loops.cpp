@@ -16,15 +16,6 @@ namespace {
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
 
-double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after) {
-  double largest = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const Eigen::Vector3d from = before[i].T_map_camera.translation();
-    largest = std::max(largest, (after[i].T_map_camera.translation() - from).norm());
-  }
-  return largest;
-}
-
 /// A picture of a session with another `frame.shrink`, in the size of this one.
 void fit(KeyframeView& view, const cv::Size& size) {
   if (view.intensity.size() == size) return;
@@ -35,6 +26,15 @@ void fit(KeyframeView& view, const cv::Size& size) {
 }
 
 }  // namespace
+
+double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after) {
+  double largest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Eigen::Vector3d from = before[i].T_map_camera.translation();
+    largest = std::max(largest, (after[i].T_map_camera.translation() - from).norm());
+  }
+  return largest;
+}
 
 std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses) {
   std::vector<MapPose> chosen;

@@ -21,6 +21,9 @@ constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 /// Poses from which a search reaches around all of these; the last ones first.
 std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses);
 
+/// How far a keyframe has moved most.
+double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after);
+
 /// Where a fragment would lie in another.
 struct FragmentPlace {
   LoopConstraint constraint;

@@ -15,6 +15,11 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
       mapper_(config),
       loop_thread_(config, AnswerTime::after_lag) {}
 
+void Pipeline::finish() {
+  loop_thread_.finish(mapper_);
+  if (config_.loop.enabled && config_.loop.refine_at_end) mapper_.refine();
+}
+
 SeenFrame Pipeline::see(const RgbdFrame& frame) {
   SeenFrame seen;
   if (!defectOf(frame).empty()) {

@@ -64,7 +64,7 @@ class LoopCloser {
 
   /// Constraints between known keyframes, measured anew from where they are: those whose pictures
   /// still agree.
-  std::vector<PoseConstraint> remeasure(const std::vector<PoseConstraint>& constraints);
+  std::vector<PoseConstraint> remeasure(const std::vector<PoseConstraint>& constraints) const;
 
   /// Of the keyframes, in the map as last told.
   std::vector<MapPose> poses() const;
@@ -93,6 +93,7 @@ class LoopCloser {
   std::optional<LoopConstraint> verify(std::int64_t id, const Eigen::Isometry3d& T_from_to_guess);
 
   LoopConfig config_;
+  TrackingConfig tracking_;
   DepthSensor sensor_;
   PairAligner aligner_;
   KeyframePicture from_, to_;  ///< a candidate, and the last keyframe

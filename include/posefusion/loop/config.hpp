@@ -18,6 +18,7 @@ struct LoopConfig {
   int enough_loops = 3;
   int answer_lag_frames = 10;
   double new_fragment_after_s = 4.0;
+  bool refine_at_end = true;
 };
 
 inline void visitFields(LoopConfig& c, FieldVisitor& v) {
@@ -41,6 +42,9 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
   v.number("new_fragment_after_s", c.new_fragment_after_s, 0.0, 1e6,
            "a lost camera that sees something for so long begins a new piece of the map, until its "
            "place is known; 0: never");
+  v.flag("refine_at_end", c.refine_at_end,
+         "after the last frame, offline and in lossless replay, all keyframes that see the same "
+         "surface are aligned with each other");
 }
 
 }  // namespace pf

@@ -72,6 +72,17 @@ class Mapper {
   /// What became of the last estimate; empty: there was none.
   const std::string& lastCalibration() const;
 
+  /// What refine() did.
+  struct Refinement {
+    std::size_t pairs = 0, measured = 0;  ///< of keyframes: compared, and found to agree
+    double largest_shift_m = 0;           ///< of a keyframe; 0: nothing has moved
+  };
+
+  /// The best that the pictures of the keyframes allow: all that see the same surface are aligned
+  /// with each other, and the graph, the map and all poses follow. Seconds of work for a hundred
+  /// keyframes: for when no frame waits. Nothing changes where the map must not.
+  Refinement refine();
+
   /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
   /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
   void load(SavedMap map, MapUse use);

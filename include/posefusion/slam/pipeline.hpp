@@ -57,8 +57,9 @@ class Pipeline {
   /// Before load() and the first frame; see Mapper::calibrate().
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
-  /// Takes in what the loop closer still has to say, after the last frame.
-  void finish() { loop_thread_.finish(mapper_); }
+  /// After the last frame: takes in what the loop closer still has to say, and refines the map
+  /// where the settings want it.
+  void finish();
 
   const LoopCounts& loopCounts() const { return loop_thread_.counts(); }
 
