@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "calibration_room.hpp"
 #include "example_map.hpp"
+#include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
@@ -101,6 +103,40 @@ TEST_F(MapToolTest, ExportWritesWhatOthersRead) {
       cv::imread(out + "/keyframes/1000.000000001_depth.png", cv::IMREAD_UNCHANGED);
   ASSERT_EQ(depth.type(), CV_16UC1);
   EXPECT_EQ(depth.at<std::uint16_t>(3, 4), 2001);
+}
+
+TEST_F(MapToolTest, TheCalibrationOfAMapIsToldAndExported) {
+  EXPECT_EQ(run({"info", file}), 0) << said;
+  EXPECT_TRUE(hasSaid("calibration  none")) << said;
+  const std::string yaml = folder / "calibration.yaml", picture = folder / "field.png";
+  EXPECT_EQ(run({"calibration", file, "-o", yaml}), 1);
+  EXPECT_TRUE(hasSaid(file + ": has no calibration")) << said;
+  EXPECT_FALSE(fs::exists(yaml));
+
+  const DepthCalibration known = {
+      "seven", test::roomCamera(640), test::roomField(), 123, 1500, 7.25, 5.5, 0.0004};
+  MapUpdate update = example.update;
+  update.blobs["calibration"] = calibrationText(known);
+  const std::string corrected = folder / "corrected.pfdb";
+  MapWriter(corrected, MapWriter::Mode::create).write(update);
+  EXPECT_EQ(run({"info", corrected}), 0) << said;
+  char rms[80];
+  std::snprintf(rms, sizeof rms, "camera seven, RMS %.1f mm at 2 m, %.1f mm at 4 m",
+                4000 * known.field.rms(), 16000 * known.field.rms());
+  EXPECT_TRUE(hasSaid(rms)) << said;
+  EXPECT_TRUE(hasSaid("of 123 keyframes, 1500 pairs: kept-out residual 7.25 to 5.50 mm")) << said;
+  EXPECT_EQ(run({"calibration", corrected, "-o", yaml, "--picture", picture}), 0) << said;
+  EXPECT_EQ(readFile(yaml), calibrationText(known));
+  EXPECT_FALSE(cv::imread(picture).empty());
+
+  update.blobs["calibration"] = "nonsense";
+  const std::string bad = folder / "bad.pfdb";
+  MapWriter(bad, MapWriter::Mode::create).write(update);
+  for (const auto& arguments : {std::vector<std::string>{"calibration", bad, "-o", folder / "x"},
+                                std::vector<std::string>{"info", bad}}) {
+    EXPECT_EQ(run(arguments), 1);
+    EXPECT_TRUE(hasSaid(bad + ": its calibration of depth")) << said;
+  }
 }
 
 TEST_F(MapToolTest, WrongUseIsToldAndChangesNothing) {

@@ -10,8 +10,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/notice.hpp"
 #include "posefusion_ros/parameters.hpp"
 #include "posefusion_ros/queue_keeper.hpp"
 #include "posefusion_ros/stage_watch.hpp"
@@ -52,6 +54,9 @@ class ChainNodelet : public nodelet::Nodelet {
 
   /// Logs the parameters that are not the defaults, and warns of those that nobody knows.
   void report(const Parameters& parameters);
+
+  /// Logs them.
+  void tell(const std::vector<Notice>& notices) const;
 
   /// Calls `action` once `ready` is true: looks every 50 ms, in the nodelet's serial queue. A stage
   /// advertises its results only when the stage before it is there, so that once `status` is

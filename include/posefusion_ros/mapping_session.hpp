@@ -4,10 +4,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "posefusion/slam/loop_exchange.hpp"
 #include "posefusion/slam/mapper.hpp"
+#include "posefusion_ros/calibration_store.hpp"
 #include "posefusion_ros/map_saver.hpp"
+#include "posefusion_ros/notice.hpp"
 #include "posefusion_ros/parameters.hpp"
 
 namespace posefusion_ros {
@@ -18,23 +22,36 @@ struct MappingSettings {
   MapSaverSettings saver;
   std::string map_file;          ///< to begin in; empty: none
   std::string calibration_file;  ///< file that depth is corrected by; empty: none
+  CalibrationStoreSettings store;
   bool localize_only = false;
   bool continue_map = false;  ///< write that file on
 };
 
-/// Reads the groups of settings, `lossless`, those of the saver, `map_file`, `localize_only` and
-/// `continue_map`. Throws InputError where they contradict each other.
+/// How far the question for a calibration is.
+struct CalibrationProgress {
+  std::size_t frames = 0;      ///< that came, since the beginning
+  std::size_t unanswered = 0;  ///< questions that the loop closer has given up, as long
+  int version = 0;             ///< Mapper::depthVersion()
+  std::string said;            ///< Mapper::lastCalibration()
+};
+
+/// Reads the groups of settings, `lossless`, those of the saver and of the store of calibrations,
+/// `map_file`, `calibration_file`, `localize_only` and `continue_map`. Throws InputError where they
+/// contradict each other.
 MappingSettings readMapping(Parameters& parameters);
 
 /// Fusion without its topics: the map that grows now, what the loop closer says to it, and its
-/// files; begun anew, loaded, switched between mapping and localisation. Not thread safe.
+/// files; begun anew, loaded, switched between mapping and localisation; and what is known of its
+/// depth camera. Not thread safe.
 class MappingSession {
  public:
-  /// Throws InputError naming the map file, or the folder that cannot be written.
+  /// Throws InputError naming the map or calibration file, or the folder that cannot be written.
   MappingSession(const MappingSettings& settings, std::unique_ptr<pf::LoopResponder> closer);
 
-  /// `trouble`: what the loop closer threw or could not be written, and goes on; empty for nothing.
-  pf::FrameStatus process(const pf::StaticFrame& input, std::string& trouble);
+  /// `camera_frame`: frame_id of the images. `trouble`: what the loop closer threw or could not be
+  /// written, and goes on; empty for nothing.
+  pf::FrameStatus process(const pf::StaticFrame& input, const std::string& camera_frame,
+                          std::string& trouble);
 
   const pf::Mapper& mapper() const { return *mapper_; }
   const pf::LoopExchange& loops() const { return loops_; }
@@ -48,6 +65,18 @@ class MappingSession {
   }
   pf::MapUse use() const { return use_; }
   bool isLoaded() const { return !map_file_.empty(); }  ///< the map began in a file
+
+  /// What depth is corrected by: "learned", or the file that told it; empty: nothing.
+  std::string correctedBy() const { return mapper_->calibration() ? corrected_by_ : ""; }
+
+  /// What was found out about the depth camera since the last call.
+  std::vector<Notice> takeNotices() { return std::exchange(notices_, {}); }
+
+  /// The next frame makes the loop closer estimate the error of the depth camera. Throws InputError
+  /// where that cannot be. @{
+  void askForCalibration();
+  CalibrationProgress calibrationProgress() const;
+  /// @}
 
   /// Each returns a sentence that tells what was done, and throws InputError where it changes
   /// nothing. @{
@@ -73,12 +102,22 @@ class MappingSession {
 
  private:
   MapToSave toSave() const { return {*mapper_, camera_}; }
-  std::unique_ptr<pf::Mapper> begunIn(pf::SavedMap map, const std::string& file, pf::MapUse use);
+  std::unique_ptr<pf::Mapper> begunIn(pf::SavedMap map, const std::string& file, pf::MapUse use,
+                                      const std::optional<pf::DepthCalibration>& known) const;
   void clear();
+  void recallCamera(const std::string& frame_id);
+  void noteCorrection(const std::string& file);
+  void keepWhatWasLearned(int version_before);
 
   pf::Config config_;
   bool is_lossless_;
-  std::optional<pf::DepthCalibration> calibration_;  // of the camera, where it is known
+  CalibrationStore store_;
+  bool is_camera_named_ = false;  // the store knows whose calibrations it keeps
+  bool is_unkept_ = false;        // something was learned that could not be written
+  bool is_continued_ = false;     // the map file that was begun in is written on
+  std::string corrected_by_;      // see correctedBy()
+  std::vector<Notice> notices_;
+  std::size_t frames_ = 0;  // that came
   MapSaver saver_;
   std::unique_ptr<pf::Mapper> mapper_;
   pf::LoopExchange loops_;

@@ -68,7 +68,7 @@ class FusionNodelet : public ChainNodelet {
     CloserLink* const link = closer.get();
     session_ = std::make_unique<MappingSession>(settings, std::move(closer));
     closer_ = link;
-
+    tell(session_->takeNotices());
     pose_output_ = std::make_unique<PoseOutput>(handle, poses);
     beginPoses();
     worker_ = std::make_unique<Worker<Set>>(settings.lossless ? 0 : queue,
@@ -154,7 +154,8 @@ class FusionNodelet : public ChainNodelet {
     const std_msgs::Header& header = FusionInput::headerOf(set);
     const int version = session_->mapper().backEnd().graph().version();
     std::string trouble;
-    const FrameStatus status = session_->process(toStaticFrame(set), trouble);
+    const FrameStatus status = session_->process(toStaticFrame(set), header.frame_id, trouble);
+    tell(session_->takeNotices());
     if (status.map_full) NODELET_WARN_THROTTLE(30.0, "the map is full (~map/memory_limit_mb)");
     if (!trouble.empty()) NODELET_WARN_THROTTLE(30.0, "%s", trouble.c_str());
     const std::string unanswered = closer_->takeComplaint();
@@ -165,7 +166,7 @@ class FusionNodelet : public ChainNodelet {
     if (session_->mapper().backEnd().graph().version() != version) {
       pose_output_->correct(session_->mapper().backEnd().trajectory());
     }
-    mapping_watch_.note(status, session_->mapper(), session_->loops().counts(), watch());
+    mapping_watch_.note(status, *session_, watch());
     publishMap(header.stamp);
     publishStatus(status, header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
   }

@@ -3,9 +3,11 @@
 
 #include <ros/console.h>
 
+#include <thread>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion_ros/calibration_wait.hpp"
 #include "posefusion_ros/trigger.hpp"
 
 namespace posefusion_ros {
@@ -19,6 +21,10 @@ FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session,
                handle.advertiseService("pause", &FusionServices::onPause, this),
                handle.advertiseService("resume", &FusionServices::onResume, this),
                handle.advertiseService("reset", &FusionServices::onReset, this)};
+  ros::NodeHandle waiting(handle);
+  waiting.setCallbackQueue(&waiting_);
+  services_.push_back(waiting.advertiseService("calibrate", &FusionServices::onCalibrate, this));
+  waiter_.start();
   map_query_ = std::make_unique<MapQuery>(handle, actions_.post, actions_.draw);
   settings_ = std::make_unique<SettingsServer<FusionSettings>>(
       handle, initial,
@@ -28,7 +34,9 @@ FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session,
 }
 
 void FusionServices::shutdown() {
+  is_ending_ = true;  // who waits for frames
   for (ros::ServiceServer& service : services_) service.shutdown();
+  waiter_.stop();
   settings_.reset();
   map_query_.reset();
 }
@@ -93,9 +101,35 @@ bool FusionServices::onResume(Trigger::Request& /*request*/, Trigger::Response& 
   return answer(task, response);
 }
 
+bool FusionServices::onCalibrate(Trigger::Request& /*request*/, Trigger::Response& response) {
+  CalibrationWait wait;
+  const auto ask = [&] {
+    if (is_paused_) throw pf::InputError("paused: frames are not looked at");
+    session_.askForCalibration();
+    wait = CalibrationWait(session_.calibrationProgress());
+    return std::string();
+  };
+  const auto look = [&] { return wait.look(session_.calibrationProgress()); };
+  answerTrigger(actions_.post, ask, response);
+  while (response.success != 0U && response.message.empty() && !is_ending_) {
+    std::this_thread::sleep_for(CalibrationWait::kPeriod);
+    answerTrigger(actions_.post, look, response);
+  }
+  if (response.message.empty()) {
+    response.success = 0U;
+    response.message = "shutting down";
+  }
+  return tell(response);
+}
+
 template <typename Response>
 bool FusionServices::answer(const std::function<std::string()>& task, Response& response) {
   answerTrigger(actions_.post, task, response);
+  return tell(response);
+}
+
+template <typename Response>
+bool FusionServices::tell(const Response& response) {
   if (response.success) {
     ROS_INFO("%s", response.message.c_str());
   } else {

@@ -3,7 +3,9 @@
 
 #include <posefusion/LoadMap.h>
 #include <posefusion/SetMode.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/spinner.h>
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
@@ -47,6 +49,7 @@ class FusionServices {
 
   bool onSave(Trigger::Request& request, Trigger::Response& response);
   bool onReset(Trigger::Request& request, Trigger::Response& response);
+  bool onCalibrate(Trigger::Request& request, Trigger::Response& response);
   bool onLoad(LoadMap::Request& request, LoadMap::Response& response);
   bool onSetMode(SetMode::Request& request, SetMode::Response& response);
   bool onPause(Trigger::Request& request, Trigger::Response& response);
@@ -54,11 +57,16 @@ class FusionServices {
 
   template <typename Response>
   bool answer(const std::function<std::string()>& task, Response& response);
+  template <typename Response>
+  static bool tell(const Response& response);
 
   MappingSession& session_;
   Actions actions_;
-  std::atomic<bool> is_paused_{false};
+  std::atomic<bool> is_paused_{false}, is_ending_{false};
+  // Whoever waits for frames to come must not hold a thread of the manager: frames may wait for it.
+  ros::CallbackQueue waiting_;
   std::vector<ros::ServiceServer> services_;
+  ros::AsyncSpinner waiter_{1, &waiting_};
   std::unique_ptr<MapQuery> map_query_;
   std::unique_ptr<SettingsServer<FusionSettings>> settings_;
 };

@@ -100,6 +100,16 @@ void ChainNodelet::report(const Parameters& parameters) {
   }
 }
 
+void ChainNodelet::tell(const std::vector<Notice>& notices) const {
+  for (const Notice& notice : notices) {
+    if (notice.is_warning) {
+      NODELET_WARN("%s", notice.text.c_str());
+    } else {
+      NODELET_INFO("%s", notice.text.c_str());
+    }
+  }
+}
+
 void ChainNodelet::whenReady(std::function<bool()> ready, std::function<void()> action) {
   const auto look = [this, ready = std::move(ready),
                      action = std::move(action)](const ros::WallTimerEvent&) {

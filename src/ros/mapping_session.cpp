@@ -22,12 +22,15 @@ pf::AnswerTime answerTime(bool lossless) {
 
 MappingSettings readMapping(Parameters& parameters) {
   MappingSettings s;
-  s.config = parameters.config({"sensor", "frame", "tracking", "map", "loop", "graph", "calibration"});
+  s.config =
+      parameters.config({"sensor", "frame", "tracking", "map", "loop", "graph", "calibration"});
   s.lossless = parameters.flag("lossless", false);
   s.saver = readMapSaver(parameters);
   s.saver.settings = pf::toYaml(s.config);
   s.map_file = parameters.text("map_file", "");
   s.calibration_file = parameters.text("calibration_file", "");
+  // A lossless replay is what the offline run is: nothing but its arguments tells it anything.
+  s.store = readCalibrationStore(parameters, !s.lossless);
   s.localize_only = parameters.flag("localize_only", false);
   s.continue_map = parameters.flag("continue_map", false);
   if (s.map_file.empty() && (s.localize_only || s.continue_map)) {
@@ -43,26 +46,38 @@ MappingSession::MappingSession(const MappingSettings& settings,
                                std::unique_ptr<pf::LoopResponder> closer)
     : config_(settings.config),
       is_lossless_(settings.lossless),
+      store_(settings.store),
+      is_continued_(settings.continue_map),
       saver_(settings.saver),
       mapper_(std::make_unique<pf::Mapper>(settings.config)),
       loops_(settings.config.loop.answer_lag_frames, answerTime(settings.lossless),
              std::move(closer)) {
+  std::optional<pf::DepthCalibration> known;
   if (!settings.calibration_file.empty()) {
-    calibration_ = pf::loadCalibration(settings.calibration_file);
-    mapper_->calibrate(*calibration_);
+    known = pf::loadCalibration(settings.calibration_file);
+    mapper_->calibrate(*known);
   }
-  if (settings.map_file.empty()) return;
+  if (settings.map_file.empty()) {
+    if (known) noteCorrection(settings.calibration_file);
+    return;
+  }
   use_ = settings.localize_only ? MapUse::localize_only : MapUse::extend;
   pf::SavedMap saved = pf::readSavedMap(settings.map_file);
   camera_ = saved.camera;
-  mapper_ = begunIn(std::move(saved), settings.map_file, use_);
+  const bool tells = saved.calibration.has_value();
+  mapper_ = begunIn(std::move(saved), settings.map_file, use_, known);
   map_file_ = realPath(settings.map_file);
+  if (tells || known) noteCorrection(tells ? map_file_ : settings.calibration_file);
   if (settings.continue_map) saver_.continueIn(map_file_, toSave());
 }
 
-pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::string& trouble) {
+pf::FrameStatus MappingSession::process(const pf::StaticFrame& input,
+                                        const std::string& camera_frame, std::string& trouble) {
   trouble.clear();
   seen_ = input.frame.camera;
+  if (!is_camera_named_ && pf::defectOf(input.frame).empty()) recallCamera(camera_frame);
+  const int version = mapper_->depthVersion();
+  ++frames_;
   pf::FrameStatus status = mapper_->process(input);
   if (status.is_other_camera && isLoaded()) {
     status.detail = pf::cameraDefect(map_file_, camera_, seen_, kImages);
@@ -72,6 +87,7 @@ pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::strin
   } catch (const std::exception& error) {
     trouble = error.what();
   }
+  keepWhatWasLearned(version);
   if (status.outcome != pf::FrameOutcome::bad_input && !pf::isSameCamera(camera_, seen_)) {
     camera_ = seen_;
   }
@@ -83,6 +99,7 @@ pf::FrameStatus MappingSession::process(const pf::StaticFrame& input, std::strin
 void MappingSession::clear() {
   mapper_->reset();
   loops_.reset();
+  is_continued_ = false;
   use_ = MapUse::extend;
   map_file_.clear();
 }
@@ -93,11 +110,12 @@ std::string MappingSession::reset() {
   return said + (said.empty() ? "" : "; ") + "the map is empty, the next frame begins a new one";
 }
 
-std::unique_ptr<pf::Mapper> MappingSession::begunIn(pf::SavedMap map, const std::string& file,
-                                                    MapUse use) {
+std::unique_ptr<pf::Mapper> MappingSession::begunIn(
+    pf::SavedMap map, const std::string& file, MapUse use,
+    const std::optional<pf::DepthCalibration>& known) const {
   auto mapper = std::make_unique<pf::Mapper>(config_);
   try {
-    if (calibration_) mapper->calibrate(*calibration_);
+    if (known) mapper->calibrate(*known);
     mapper->load(std::move(map), use);
   } catch (const InputError& error) {
     throw InputError(file + ": " + error.what());
@@ -111,12 +129,15 @@ std::string MappingSession::load(const std::string& file, pf::SavedMap map) {
     if (!defect.empty()) throw InputError(defect);
   }
   const pf::PinholeCamera camera = map.camera;
-  auto loaded = begunIn(std::move(map), file, use_);
+  const bool tells = map.calibration.has_value();
+  auto loaded = begunIn(std::move(map), file, use_, mapper_->calibration());
   const std::string real_file = realPath(file);  // `latest` will lead elsewhere
   std::string said = saver_.beginAnew(toSave(), real_file);
   mapper_ = std::move(loaded);
   loops_.reset();
   map_file_ = real_file;
+  is_continued_ = false;
+  if (tells) noteCorrection(map_file_);
   camera_ = camera;
   return said + (said.empty() ? "" : "; ") + "the map is that of " + file + ", with " +
          std::to_string(mapper_->map().size()) + " surfels; the camera is looked for in it";
@@ -140,7 +161,7 @@ std::string MappingSession::startAnew(std::string& lost) {
   if (use_ == MapUse::extend) {
     clear();
   } else {
-    mapper_ = begunIn(mapper_->saved(camera_), map_file_, use_);
+    mapper_ = begunIn(mapper_->saved(camera_), map_file_, use_, mapper_->calibration());
     loops_.reset();
   }
   return said;
@@ -159,12 +180,18 @@ std::string MappingSession::restartClock(std::string& unsaved) {
 }
 
 std::string MappingSession::finish() {
+  const int version = mapper_->depthVersion();
   try {
     loops_.finish(*mapper_);
     if (is_lossless_ && config_.loop.enabled && config_.loop.refine_at_end) mapper_->refine();
   } catch (const std::exception&) {  // what it still had to say
   }
-  return saver_.finish(toSave());
+  keepWhatWasLearned(is_unkept_ ? -1 : version);
+  std::string said = saver_.finish(toSave());
+  for (const Notice& notice : takeNotices()) {
+    if (notice.is_warning) said += (said.empty() ? "" : "; ") + notice.text;
+  }
+  return said;
 }
 
 }  // namespace posefusion_ros

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/mapping_watch.hpp"
 
+#include <cstdio>
 #include <numeric>
 #include <string>
 
 #include "posefusion/map/surfel_map.hpp"
+#include "posefusion_ros/calibration_store.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -19,10 +21,37 @@ std::string secondsText(std::int64_t ns) {
   return text.substr(0, text.find('.') + 2);
 }
 
+void noteMap(const pf::FrameStatus& status, const MappingSession& session, StageWatch& watch) {
+  const auto count = [&watch](const char* key, std::size_t value) {
+    watch.set(key, std::to_string(value));
+  };
+  const pf::Mapper& mapper = session.mapper();
+  const pf::LoopCounts& loops = session.loops().counts();
+  count("surfels", status.surfels);
+  count("surfel memory (MB)",
+        static_cast<std::size_t>(static_cast<double>(mapper.map().memory()) / kMegabyte));
+  count("inliers", static_cast<std::size_t>(std::max(0, status.tracking.inliers)));
+  count("keyframes", mapper.backEnd().graph().keyframes().size());
+  count("loops closed", mapper.backEnd().counts().accepted);
+  count("loops refused", mapper.backEnd().counts().refused + loops.allRefused());
+  count("places searched", loops.searched);
+  count("places found", loops.found);
+}
+
+void noteDepth(const MappingSession& session, StageWatch& watch) {
+  const auto& calibration = session.mapper().calibration();
+  const std::string by = session.correctedBy();
+  char amount_mm[32] = "0.0";
+  if (calibration) std::snprintf(amount_mm, sizeof amount_mm, "%.1f", errorAt2mMm(*calibration));
+  watch.set("depth corrected by", by.empty() ? "nothing" : by);
+  watch.set("depth learned anew", std::to_string(session.mapper().depthVersion()));
+  watch.set("depth correction at 2 m (mm)", amount_mm);
+}
+
 }  // namespace
 
-void MappingWatch::note(const pf::FrameStatus& status, const pf::Mapper& mapper,
-                        const pf::LoopCounts& loops, StageWatch& watch) {
+void MappingWatch::note(const pf::FrameStatus& status, const MappingSession& session,
+                        StageWatch& watch) {
   const bool is_lost = status.state == TrackingState::lost;
   if (!is_lost || found_ns_ > status.stamp_ns || found_ns_ == 0) found_ns_ = status.stamp_ns;
   const std::string lost_s = secondsText(status.stamp_ns - found_ns_);
@@ -41,20 +70,10 @@ void MappingWatch::note(const pf::FrameStatus& status, const pf::Mapper& mapper,
   } else {
     watch.tell(DiagnosticStatus::OK, "");
   }
-  const auto count = [&watch](const char* key, std::size_t value) {
-    watch.set(key, std::to_string(value));
-  };
   watch.set("state", std::string(name(status.state)));
   watch.set("lost for (s)", lost_s);
-  count("surfels", status.surfels);
-  count("surfel memory (MB)",
-        static_cast<std::size_t>(static_cast<double>(mapper.map().memory()) / kMegabyte));
-  count("inliers", static_cast<std::size_t>(std::max(0, status.tracking.inliers)));
-  count("keyframes", mapper.backEnd().graph().keyframes().size());
-  count("loops closed", mapper.backEnd().counts().accepted);
-  count("loops refused", mapper.backEnd().counts().refused + loops.allRefused());
-  count("places searched", loops.searched);
-  count("places found", loops.found);
+  noteMap(status, session, watch);
+  noteDepth(session, watch);
 }
 
 }  // namespace posefusion_ros

@@ -201,6 +201,8 @@ void Mapper::load(SavedMap saved, MapUse use) {
     s.use(std::move(saved.calibration));
   } else if (s.calibration) {  // the map is of depth as it was measured
     s.correctDepthBy(s.calibration->field, s.calibration->left_per_m);
+    ++s.depth_version;  // the keyframes' pictures have changed, and with them what a file has
+    s.constraints_are_old = true;
   }
   const std::vector<MapPose> poses = s.back_end.keyframePoses();
   for (const MapPose& pose : poses) s.last_fragment = std::max(s.last_fragment, pose.fragment);

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <set>
 
+#include "map_calibration.hpp"
 #include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
@@ -50,6 +51,7 @@ void printInfo(const std::string& file) {
               fragmentsOf(content), counts.images);
   std::printf("constraints  %zu, of them %td loops\n", content.constraints.size(), loops);
   std::printf("corrections  %d\n", content.graph_version);
+  printCalibration(content, file);
   std::size_t bytes = 0;
   for (const auto& [name, data] : content.blobs) bytes += data.size();
   std::printf("blobs        %zu, %zu bytes\n", content.blobs.size(), bytes);
@@ -155,9 +157,16 @@ int lookIntoMap(int argc, char** argv) {
   CLI::App* const repairing =
       command("repair", "writes what can be read of a damaged map into a new file");
   repairing->add_option("-o,--output", repaired, "the new file")->required();
+  std::string calibration, picture;
+  CLI::App* const calibrating =
+      command("calibration", "writes what its depth was corrected by into a calibration file");
+  calibrating->add_option("-o,--output", calibration, "the calibration file")->required();
+  calibrating->add_option("--picture", picture, "PNG of the field");
   CLI11_PARSE(app, argc, argv);
   if (*repairing) {
     repair(file, repaired);
+  } else if (*calibrating) {
+    exportCalibration(file, calibration, picture);
   } else if (*info) {
     printInfo(file);
   } else if (*checking) {

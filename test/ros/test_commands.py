@@ -125,7 +125,8 @@ class Commands(unittest.TestCase):
         self.assertGreater(len(topics), 15)
         types = {self.run_to_its_end("rostopic type " + topic).strip() for topic in topics}
         services = {self.run_to_its_end("rosservice type /posefusion/fusion/" + name).strip()
-                    for name in ("save_map", "load_map", "set_mode", "pause", "resume", "reset", "get_map")}
+                    for name in ("save_map", "load_map", "set_mode", "pause", "resume", "reset", "get_map",
+                                 "calibrate")}
         import roslib.message
         for name in types:
             self.assertIsNotNone(roslib.message.get_message_class(name), name)

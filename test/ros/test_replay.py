@@ -97,9 +97,31 @@ class Replay(unittest.TestCase):
             runs[name] = pathlib.Path(self.folder, name, "latest/map.ply").read_bytes()
         self.assertEqual(pathlib.Path(self.folder, "calibrated/latest/map.ply").read_bytes(), runs["corrected"])
         self.assertNotEqual(runs["corrected"], runs["uncorrected"])
-        bent.write_text("nonsense")
-        text = self.replay("bag:=" + self.bag, "output:=none", "calibration:=bent.yaml", expect=None)
-        self.assertIn(str(bent), text)
+        self.check_that_a_folder_tells_it_too(bent, runs["corrected"])
+
+    def check_that_a_folder_tells_it_too(self, calibration, expected):
+        cameras = pathlib.Path(self.folder, "cameras")
+        cameras.mkdir()
+        shutil.copy(calibration, cameras / "camera_rgb_optical_frame.yaml")
+        text = self.replay("bag:=" + self.bag, "detector:=recorded", "output:=kept", "calibration_folder:=cameras")
+        self.assertIn(f"depth is corrected by {cameras}/camera_rgb_optical_frame.yaml", text)
+        self.assertEqual(pathlib.Path(self.folder, "kept/latest/map.ply").read_bytes(), expected)
+
+    def test_a_calibration_that_does_not_hold_is_named(self):
+        file = pathlib.Path(self.folder, "wrong.yaml")
+        file.write_text("nonsense")
+        arguments = ("bag:=sequence.bag", "detector:=none", "output:=wrong", "calibration:=wrong.yaml")
+        text = self.replay(*arguments, expect=1)
+        self.assertIn(str(file), text)
+        self.assertNotIn("process[", text, "nothing was started")
+        text = self.replay(*arguments, "check:=false")
+        self.assertRegex(text, rf"cannot start: {file}")
+        self.assertIn("the chain has ended", text)
+        plain = pathlib.Path(self.folder, "sequence/depth_field.yaml").read_text()
+        file.write_text(re.sub(r"fx: [0-9.]+", "fx: 900", plain))
+        text = self.replay(*arguments, expect=None)
+        self.assertIn(f"{FRAMES} frames sent, {FRAMES} bad_input", text)
+        self.assertIn("the calibration of depth is of a camera of another view", text)
 
     def check_summaries(self, text):
         """What the replay tells beside the offline run is the same, as far as it is told."""

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace posefusion_ros {
+
+/// A line for the log, of somebody who writes none.
+struct Notice {
+  bool is_warning = false;
+  std::string text;
+};
+
+}  // namespace posefusion_ros
