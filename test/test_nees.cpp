@@ -130,5 +130,41 @@ TEST(NeesOfMotions, NoCovarianceIsTooSure) {
   EXPECT_EQ(neesOfMotions(r.truth, r.poses, 5).too_high, 1.0);
 }
 
+/// Constraints between keyframes of the walk whose errors are normal noise of sigmas().
+NeesShare ofConstraints(double said) {
+  const Walk r = walk(1.0);
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  std::vector<Keyframe> keyframes;
+  std::vector<PoseConstraint> constraints;
+  for (int i = 0; i < 4000; ++i) {
+    Keyframe keyframe;
+    keyframe.id = i;
+    keyframe.stamp_ns = r.truth[static_cast<std::size_t>(i)].stamp_ns;
+    keyframes.push_back(keyframe);
+    PoseConstraint c;
+    c.from = i / 2;
+    c.to = i;
+    Vector6d error;
+    for (int axis = 0; axis < 6; ++axis) error[axis] = sigmas()[axis] * normal(random);
+    c.T_from_to = r.truth[static_cast<std::size_t>(c.from)].T_world_camera.inverse() *
+                  r.truth[static_cast<std::size_t>(c.to)].T_world_camera * expSe3(error);
+    c.covariance = (said * sigmas()).cwiseAbs2().asDiagonal();
+    constraints.push_back(c);
+  }
+  keyframes.back().stamp_ns += 1'000'000 * kMs;
+  return neesOfConstraints(r.truth, keyframes, constraints);
+}
+
+TEST(NeesOfConstraints, IsTwoSided) {
+  const NeesShare honest = ofConstraints(1.0);
+  EXPECT_EQ(honest.windows, 3999U) << "all whose keyframes have a true pose";
+  EXPECT_NEAR(honest.mean, 6.0, 0.2);
+  EXPECT_NEAR(honest.inside, 0.95, 0.015);
+  for (const double axis : honest.axes) EXPECT_NEAR(axis, 1.0, 0.06);
+  EXPECT_GT(ofConstraints(0.5).too_high, 0.7);
+  EXPECT_GT(ofConstraints(2.0).too_low, 0.4);
+}
+
 }  // namespace
 }  // namespace pf

@@ -37,12 +37,7 @@ struct MotionError {
   Vector6d sigmas = Vector6d::Zero();  ///< |error| of each axis
 };
 
-MotionError errorOf(const KnownPose& from, const KnownPose& to) {
-  const Eigen::Isometry3d T_to_from = to.T_world_camera.inverse() * from.T_world_camera;
-  const Vector6d error =
-      logSe3(T_to_from * from.estimate.T_map_camera.inverse() * to.estimate.T_map_camera);
-  const Matrix6d A = adjoint(T_to_from);
-  const Matrix6d covariance = to.estimate.covariance + A * from.estimate.covariance * A.transpose();
+MotionError normalised(const Vector6d& error, const Matrix6d& covariance) {
   const Eigen::LDLT<Matrix6d> factors(covariance);
   if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0.0)) {
     const double all = error.isZero(0.0) ? 0.0 : std::numeric_limits<double>::infinity();
@@ -50,6 +45,14 @@ MotionError errorOf(const KnownPose& from, const KnownPose& to) {
   }
   return {error.dot(factors.solve(error)),
           error.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt())};
+}
+
+MotionError errorOf(const KnownPose& from, const KnownPose& to) {
+  const Eigen::Isometry3d T_to_from = to.T_world_camera.inverse() * from.T_world_camera;
+  const Vector6d error =
+      logSe3(T_to_from * from.estimate.T_map_camera.inverse() * to.estimate.T_map_camera);
+  const Matrix6d A = adjoint(T_to_from);
+  return normalised(error, to.estimate.covariance + A * from.estimate.covariance * A.transpose());
 }
 
 /// Where the motion from each pose ends; nothing where there is no pose in time.
@@ -79,15 +82,13 @@ std::optional<double> windowMean(const std::vector<std::optional<std::size_t>>& 
 }
 
 /// What all motions have in common, whatever their windows.
-void describe(const std::vector<MotionError>& errors,
-              const std::vector<std::optional<std::size_t>>& ends, NeesShare& share) {
+void describe(const std::vector<MotionError>& errors, NeesShare& share) {
   std::vector<double> nees;
   std::array<std::vector<double>, 6> axes;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!ends[i]) continue;
-    nees.push_back(errors[i].nees);
+  for (const MotionError& error : errors) {
+    nees.push_back(error.nees);
     for (int axis = 0; axis < 6; ++axis) {
-      axes[static_cast<std::size_t>(axis)].push_back(errors[i].sigmas[axis]);
+      axes[static_cast<std::size_t>(axis)].push_back(error.sigmas[axis]);
     }
   }
   const ErrorStatistics all = statisticsOf(std::move(nees));
@@ -97,6 +98,23 @@ void describe(const std::vector<MotionError>& errors,
   for (std::size_t axis = 0; axis < 6; ++axis) {
     share.axes[axis] = statisticsOf(std::move(axes[axis])).median / kMedianOfNormal;
   }
+}
+
+/// How many of the windows' means lie where.
+void count(const std::vector<double>& means, std::size_t per_window, NeesShare& share) {
+  const auto n = static_cast<double>(per_window);
+  share.low = chiSquareQuantile(6 * static_cast<int>(per_window), kOutside) / n;
+  share.high = chiSquareQuantile(6 * static_cast<int>(per_window), 1.0 - kOutside) / n;
+  share.windows = means.size();
+  if (means.empty()) return;
+  const auto windows = static_cast<double>(means.size());
+  const auto low =
+      std::count_if(means.begin(), means.end(), [&](double m) { return m < share.low; });
+  const auto high =
+      std::count_if(means.begin(), means.end(), [&](double m) { return m > share.high; });
+  share.too_low = static_cast<double>(low) / windows;
+  share.too_high = static_cast<double>(high) / windows;
+  share.inside = 1.0 - share.too_low - share.too_high;
 }
 
 }  // namespace
@@ -124,24 +142,32 @@ NeesShare neesOfMotions(const Trajectory& truth, const std::vector<UncertainPose
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (ends[i]) errors[i] = errorOf(known[i], known[*ends[i]]);
   }
-  NeesShare share;
-  describe(errors, ends, share);
-  const auto n = static_cast<double>(per_window);
-  share.low = chiSquareQuantile(6 * static_cast<int>(per_window), kOutside) / n;
-  share.high = chiSquareQuantile(6 * static_cast<int>(per_window), 1.0 - kOutside) / n;
-  std::size_t low = 0, high = 0;
+  std::vector<MotionError> complete;
+  std::vector<double> means;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    const auto mean = windowMean(ends, errors, i, per_window);
-    if (!mean) continue;
-    ++share.windows;
-    if (*mean < share.low) ++low;
-    if (*mean > share.high) ++high;
+    if (ends[i]) complete.push_back(errors[i]);
+    if (const auto mean = windowMean(ends, errors, i, per_window)) means.push_back(*mean);
   }
-  if (share.windows == 0) return share;
-  const auto windows = static_cast<double>(share.windows);
-  share.too_low = static_cast<double>(low) / windows;
-  share.too_high = static_cast<double>(high) / windows;
-  share.inside = 1.0 - share.too_low - share.too_high;
+  NeesShare share;
+  describe(complete, share);
+  count(means, per_window, share);
+  return share;
+}
+
+NeesShare neesOfConstraints(const Trajectory& truth, const std::vector<Keyframe>& keyframes,
+                            const std::vector<PoseConstraint>& constraints) {
+  std::vector<MotionError> errors;
+  std::vector<double> nees;
+  for (const PoseConstraint& c : constraints) {
+    const auto from = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.from)).stamp_ns);
+    const auto to = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
+    if (!from || !to) continue;
+    errors.push_back(normalised(logSe3(to->inverse() * *from * c.T_from_to), c.covariance));
+    nees.push_back(errors.back().nees);
+  }
+  NeesShare share;
+  describe(errors, share);
+  count(nees, 1, share);
   return share;
 }
 

@@ -7,6 +7,8 @@
 
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/evaluation/covariance_check.hpp"
+#include "posefusion/graph/constraint.hpp"
+#include "posefusion/graph/keyframe.hpp"
 
 namespace pf {
 
@@ -40,5 +42,11 @@ struct NeesShare {
 /// those without a truth within 0.02 s, break a window. A covariance without extent holds no error.
 NeesShare neesOfMotions(const Trajectory& truth, const std::vector<UncertainPose>& poses,
                         std::size_t per_window);
+
+/// The same of constraints between keyframes, each a window of its own: the twist of the error
+/// (Q_i^-1 Q_j)^-1 T_from_to has the constraint's covariance. Those between keyframes without a
+/// truth within 0.02 s are left out. Constraints must be between the keyframes given.
+NeesShare neesOfConstraints(const Trajectory& truth, const std::vector<Keyframe>& keyframes,
+                            const std::vector<PoseConstraint>& constraints);
 
 }  // namespace pf
