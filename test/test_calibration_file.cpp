@@ -17,7 +17,14 @@ namespace pf {
 namespace {
 
 DepthCalibration example() {
-  return {"a \"quoted\": name #1", test::roomCamera(640), test::roomField(), 123, 1500, 7.25, 5.5, 0.0004};
+  return {"a \"quoted\": name #1",
+          test::roomCamera(640),
+          test::roomField(),
+          123,
+          1500,
+          7.25,
+          5.5,
+          0.0004};
 }
 
 std::string errorOfFile(const std::string& path) {

@@ -86,11 +86,11 @@ double FieldEstimate::left_per_m() const { return kSigmas * sigma_per_m; }
 
 FieldEstimate estimateField(const std::vector<CalibrationView>& views,
                             const FieldEstimateConfig& config) {
-  return estimateField(surfacesOf(views), config);
+  return estimateFieldFrom(surfacesOf(views), config);
 }
 
-FieldEstimate estimateField(const std::vector<ViewSurface>& surfaces,
-                            const FieldEstimateConfig& config) {
+FieldEstimate estimateFieldFrom(const std::vector<ViewSurface>& surfaces,
+                                const FieldEstimateConfig& config) {
   FieldEstimate estimate;
   estimate.field = DepthField(config.columns, config.rows);
   estimate.views = surfaces.size();

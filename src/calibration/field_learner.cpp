@@ -37,7 +37,7 @@ FieldEstimate FieldLearner::estimate() {
   estimated_at_ = keyframes_;
   FieldEstimateConfig config;
   config.most_patches = kMostPatches;
-  return estimateField(surfaces_, config);
+  return estimateFieldFrom(surfaces_, config);
 }
 
 }  // namespace pf

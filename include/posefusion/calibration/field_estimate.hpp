@@ -62,7 +62,7 @@ FieldEstimate estimateField(const std::vector<CalibrationView>& views,
                             const FieldEstimateConfig& config = {});
 
 /// The same of surfaces that were found before, by rising id.
-FieldEstimate estimateField(const std::vector<ViewSurface>& surfaces,
-                            const FieldEstimateConfig& config = {});
+FieldEstimate estimateFieldFrom(const std::vector<ViewSurface>& surfaces,
+                                const FieldEstimateConfig& config = {});
 
 }  // namespace pf
