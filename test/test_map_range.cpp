@@ -22,8 +22,7 @@ class Walk {
  public:
   explicit Walk(const Eigen::Vector3d& start_m)
       : mapper_(std::make_unique<Mapper>(config())),
-        loops_(std::make_unique<LoopThread>(config().loop, config().tracking, DepthSensor{},
-                                            AnswerTime::after_lag)) {
+        loops_(std::make_unique<LoopThread>(config(), AnswerTime::after_lag)) {
     T_map_start_.translation() = start_m;
     mapper_->reset(T_map_start_);
   }
