@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_calibrate: the systematic error of a depth camera, from a map that it made.
+// posefusion_calibrate: the systematic error of a depth camera, from a map that it made or from a
+// recording.
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -9,14 +11,18 @@
 #include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/calibration_views.hpp"
 #include "posefusion/io/images.hpp"
+#include "posefusion/loop/dense_pairs.hpp"
 #include "posefusion/run/field_picture.hpp"
+#include "posefusion/run/run.hpp"
+#include "posefusion_ros/bag_source.hpp"
+#include "progress.hpp"
 #include "tool.hpp"
 
 namespace pf {
 namespace {
 
 struct Options {
-  std::string map, output, name, picture, truth;
+  std::string input, output, name, picture, truth;
 };
 
 /// Error of depth (mm) that an error of 1/z makes at z metres.
@@ -44,22 +50,76 @@ void printTruth(const DepthField& field, const DepthField& truth) {
               c.rms_difference, errorMm(c.rms_difference, 4));
 }
 
+bool isMap(const std::string& path) { return std::filesystem::path(path).extension() == ".pfdb"; }
+
+/// Maps a recording, in memory, and learns of its camera on the way.
+CalibrationViews viewsOfRecording(const Options& options) {
+  const auto source = posefusion_ros::openInput(options.input, {});
+  const Config config = configFor({}, *source);
+  Pipeline pipeline(config, makePoseDetector(config.pose, {}));
+  CalibrationViews all;
+  std::size_t frames = 0;
+  Progress progress(source->frameCount());
+  runPipeline(*source, pipeline, [&](const ProcessedFrame& frame, const std::string& defect) {
+    if (defect.empty() && defectOf(frame.seen.frame).empty()) all.camera = frame.seen.frame.camera;
+    progress.update(++frames);
+    return true;
+  });
+  pipeline.finish();
+  const Mapper& mapper = pipeline.mapper();
+  const std::vector<MapPose> poses = mapper.backEnd().keyframePoses();
+  for (KeyframeView view : mapper.keyframeViews()) {
+    view.pose = poses[static_cast<std::size_t>(view.id)];
+    all.views.push_back(calibrationView(view, depthSensorOf(config)));
+  }
+  all.corrected_by = mapper.calibration();
+  return all;
+}
+
+/// What depth is to be corrected by, all in all. Throws where nothing was found.
+DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate& estimate,
+                               const Options& options) {
+  DepthCalibration calibration{options.name,
+                               seen.camera.withoutDistortion(),
+                               estimate.field,
+                               estimate.views,
+                               estimate.pairs,
+                               estimate.kept_out.before_mm,
+                               estimate.kept_out.after_mm,
+                               estimate.left_per_m()};
+  if (!seen.corrected_by) {
+    if (!estimate.worth_taking) throw InputError(options.input + ": " + estimate.reason);
+    return calibration;
+  }
+  // Depth that was corrected already tells what that correction left.
+  const std::string doubt = estimate.doubtOfStep();
+  if (doubt.empty()) {
+    calibration.field = seen.corrected_by->field.then(estimate.field).centred();
+    calibration.before_mm = seen.corrected_by->before_mm;
+  } else {
+    calibration = *seen.corrected_by;
+    if (!options.name.empty()) calibration.name = options.name;
+    std::printf("corrected    already by the calibration of the map, which stands: %s\n",
+                doubt.c_str());
+  }
+  return calibration;
+}
+
 int calibrate(const Options& options) {
-  const CalibrationViews recorded = readCalibrationViews(options.map);
-  const FieldEstimate estimate = estimateField(recorded.views);
+  const CalibrationViews seen =
+      isMap(options.input) ? readCalibrationViews(options.input) : viewsOfRecording(options);
+  const FieldEstimate estimate = estimateField(seen.views);
   printEstimate(estimate);
-  // A map whose depth was corrected already tells what that correction left.
-  DepthField field = estimate.field;
-  if (recorded.corrected_by) field = recorded.corrected_by->field.then(field).centred();
   std::optional<DepthField> truth;
   if (!options.truth.empty()) truth = loadCalibration(options.truth + "/depth_field.yaml").field;
-  if (truth) printTruth(field, *truth);
-  if (!options.picture.empty()) savePng(options.picture, drawFields(field, truth));
-  if (!estimate.worth_taking) throw InputError(options.map + ": " + estimate.reason);
-  saveCalibration(options.output, {options.name, recorded.camera.withoutDistortion(), field,
-                                   estimate.views, estimate.pairs, estimate.kept_out.before_mm,
-                                   estimate.kept_out.after_mm, estimate.left_per_m()});
-  std::printf("calibration  %s\n", options.output.c_str());
+  const DepthCalibration calibration = calibrationBy(seen, estimate, options);
+  std::printf("calibration  RMS %.1f mm at 2 m, %.1f at 4 m; pairs kept out: %.2f to %.2f mm\n",
+              errorMm(calibration.field.rms(), 2), errorMm(calibration.field.rms(), 4),
+              calibration.before_mm, calibration.after_mm);
+  if (truth) printTruth(calibration.field, *truth);
+  if (!options.picture.empty()) savePng(options.picture, drawFields(calibration.field, truth));
+  saveCalibration(options.output, calibration);
+  std::printf("written      %s\n", options.output.c_str());
   return 0;
 }
 
@@ -67,10 +127,12 @@ int calibrate(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Estimates the smooth systematic error of a depth camera from a map that it made.",
+  CLI::App app{"Estimates the smooth systematic error of a depth camera from a map or a recording.",
                "posefusion_calibrate"};
   pf::Options options;
-  app.add_option("map", options.map, "map file (*.pfdb), its loops closed")->required();
+  app.add_option("input", options.input,
+                 "map file (*.pfdb), or a recording (TUM folder or bag), which is mapped for it")
+      ->required();
   app.add_option("-o,--output", options.output, "calibration file to write")->required();
   app.add_option("--name", options.name, "of the camera: serial number, or what you call it");
   app.add_option("--picture", options.picture, "PNG of the field");

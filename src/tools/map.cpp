@@ -8,6 +8,7 @@
 #include <set>
 
 #include "map_calibration.hpp"
+#include "map_refine.hpp"
 #include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
@@ -162,8 +163,14 @@ int lookIntoMap(int argc, char** argv) {
       command("calibration", "writes what its depth was corrected by into a calibration file");
   calibrating->add_option("-o,--output", calibration, "the calibration file")->required();
   calibrating->add_option("--picture", picture, "PNG of the field");
+  std::string refined;
+  CLI::App* const refining =
+      command("refine", "aligns all keyframes that see the same surface, into a new file");
+  refining->add_option("-o,--output", refined, "the new file")->required();
   CLI11_PARSE(app, argc, argv);
-  if (*repairing) {
+  if (*refining) {
+    refineMap(file, refined);
+  } else if (*repairing) {
     repair(file, repaired);
   } else if (*calibrating) {
     exportCalibration(file, calibration, picture);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_refine.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "posefusion/config/yaml_map.hpp"
+#include "posefusion/core/error.hpp"
+#include "posefusion/io/saved_map_file.hpp"
+
+namespace pf {
+namespace {
+
+/// Those that the map was made with.
+Config settingsOf(const std::string& text, const std::string& file) {
+  Config config;
+  if (!text.empty()) applyYaml(config, parseYaml(text, file), file);
+  return config;
+}
+
+void write(const Mapper& mapper, const PinholeCamera& camera, const Config& config,
+           const std::string& output) {
+  const std::string partial = output + ".part";
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+  {
+    MapRecording recording(partial, MapWriter::Mode::create, toYaml(config), mapper);
+    recording.update(camera, mapper);
+    recording.finish(mapper);
+  }
+  renameMapFile(partial, output);
+}
+
+}  // namespace
+
+void refineMap(const std::string& file, const std::string& output) {
+  if (std::filesystem::exists(output)) {
+    throw InputError(output + ": is there already, expected the name of a new map");
+  }
+  const Config config = settingsOf(MapReader(file).content().settings, file);
+  SavedMap map = readSavedMap(file);
+  const PinholeCamera camera = map.camera;
+  Mapper mapper(config);
+  try {
+    mapper.load(std::move(map), MapUse::extend);
+  } catch (const InputError& error) {
+    throw InputError(file + ": " + error.what());
+  }
+  const Mapper::Refinement done = mapper.refine();
+  write(mapper, camera, config, output);
+  std::printf("%s: %zu pairs of keyframes compared, %zu agree; keyframes moved by up to %.1f mm\n",
+              output.c_str(), done.pairs, done.measured, 1000.0 * done.largest_shift_m);
+}
+
+}  // namespace pf
