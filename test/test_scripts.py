@@ -182,7 +182,7 @@ class Repository(unittest.TestCase):
                       for f in re.findall(r"roslaunch posefusion (\w+\.launch)", text)]
             for thing in named:
                 self.assertTrue(thing.exists(), f"{name(path)}: {thing} does not exist")
-            for setting in re.findall(rf"(?:`|--set )((?:{groups})\.(?!ply|png|pfdb|partial)\w+)", text):
+            for setting in re.findall(rf"(?:`|--set )((?:{groups})\.(?!ply|png|pfdb|partial|yaml)\w+)", text):
                 self.assertIn(setting, settings, name(path))
                 found += 1
             found += len(named)
