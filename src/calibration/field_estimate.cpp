@@ -82,6 +82,17 @@ std::string FieldEstimate::doubtOfStep() const {
   return "pairs that were kept out do not agree better by more than luck explains";
 }
 
+DepthCalibration FieldEstimate::asCalibration() const {
+  DepthCalibration step;
+  step.field = field;
+  step.keyframes = views;
+  step.pairs = pairs;
+  step.before_mm = kept_out.before_mm;
+  step.after_mm = kept_out.after_mm;
+  step.left_per_m = left_per_m();
+  return step;
+}
+
 double FieldEstimate::left_per_m() const { return kSigmas * sigma_per_m; }
 
 FieldEstimate estimateField(const std::vector<CalibrationView>& views,

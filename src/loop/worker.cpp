@@ -88,13 +88,7 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   if (!estimate) return;
   answer.calibration_doubt = question.is_corrected ? estimate->doubtOfStep() : estimate->reason;
   if (!answer.calibration_doubt.empty()) return;
-  answer.calibration.emplace();
-  answer.calibration->left_per_m = estimate->left_per_m();
-  answer.calibration->field = estimate->field;
-  answer.calibration->keyframes = estimate->views;
-  answer.calibration->pairs = estimate->pairs;
-  answer.calibration->before_mm = estimate->kept_out.before_mm;
-  answer.calibration->after_mm = estimate->kept_out.after_mm;
+  answer.calibration = estimate->asCalibration();
 }
 
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {

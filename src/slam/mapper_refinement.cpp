@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When all frames are in: every pair of keyframes that see the same surface has its say.
 #include "mapper_state.hpp"
+#include "posefusion/calibration/field_estimate.hpp"
 #include "posefusion/loop/dense_pairs.hpp"
 
 namespace pf {
@@ -10,29 +11,56 @@ LoopConstraint asLoop(const PoseConstraint& c) { return {c.from, c.to, c.T_from_
 
 }  // namespace
 
-Mapper::Refinement Mapper::refine() {
-  State& s = *state_;
-  Refinement result;
-  if (!s.may_change || s.views.empty()) return result;
-  const std::vector<MapPose> before = s.back_end.keyframePoses();
-  std::vector<const KeyframeView*> views;
-  for (KeyframeView& view : s.views) {
+/// Aligns all pairs; the graph, the map and all poses follow.
+void Mapper::State::alignPairs(Refinement& done) {
+  const std::vector<MapPose> before = back_end.keyframePoses();
+  std::vector<const KeyframeView*> seen;
+  for (KeyframeView& view : views) {
     view.pose = before[static_cast<std::size_t>(view.id)];
-    views.push_back(&view);
+    seen.push_back(&view);
   }
-  const std::vector<PoseConstraint>& known = s.back_end.graph().constraints();
-  const std::vector<PoseConstraint> pairs = densePairs(s.views, known, s.sensor);
+  const std::vector<PoseConstraint>& known = back_end.graph().constraints();
+  const std::vector<PoseConstraint> pairs = densePairs(views, known, sensor);
   const auto measure = [&](const std::vector<PoseConstraint>& all) {
-    result.pairs += all.size();
-    auto measured = measurePairs(views, all, s.config.tracking, s.sensor);
-    result.measured += measured.size();
+    done.pairs += all.size();
+    auto measured = measurePairs(seen, all, config.tracking, sensor);
+    done.measured += measured.size();
     return measured;
   };
   const std::vector<PoseConstraint> anew = measure(known);
   std::vector<LoopConstraint> loops;
   for (const PoseConstraint& c : measure(pairs)) loops.push_back(asLoop(c));
-  s.follow({s.back_end.remeasure(anew)}, before);
-  s.correct(loops);
+  follow({back_end.remeasure(anew)}, before);
+  correct(loops);
+}
+
+/// What all keyframes together tell of the depth camera; whether it was worth taking.
+bool Mapper::State::learnFromAll() {
+  if (!config.calibration.learns()) return false;
+  const std::vector<MapPose> poses = back_end.keyframePoses();
+  std::vector<CalibrationView> seen;
+  for (const KeyframeView& view : views) {
+    seen.push_back(calibrationView(view, sensor));
+    const MapPose& pose = poses[static_cast<std::size_t>(view.id)];
+    seen.back().T_map_camera = pose.T_map_camera;
+    seen.back().fragment = pose.fragment;
+  }
+  const FieldEstimate estimate = estimateField(seen);
+  if (!(calibration ? estimate.doubtOfStep() : estimate.reason).empty()) return false;
+  improve(estimate.asCalibration());
+  return true;
+}
+
+Mapper::Refinement Mapper::refine() {
+  State& s = *state_;
+  Refinement result;
+  if (!s.may_change || s.views.empty()) return result;
+  const std::vector<MapPose> before = s.back_end.keyframePoses();
+  s.alignPairs(result);
+  if (s.learnFromAll()) {
+    result.pairs = result.measured = 0;
+    s.alignPairs(result);
+  }
   result.largest_shift_m = largestShiftM(before, s.back_end.keyframePoses());
   return result;
 }

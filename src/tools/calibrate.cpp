@@ -79,14 +79,9 @@ CalibrationViews viewsOfRecording(const Options& options) {
 /// What depth is to be corrected by, all in all. Throws where nothing was found.
 DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate& estimate,
                                const Options& options) {
-  DepthCalibration calibration{options.name,
-                               seen.camera.withoutDistortion(),
-                               estimate.field,
-                               estimate.views,
-                               estimate.pairs,
-                               estimate.kept_out.before_mm,
-                               estimate.kept_out.after_mm,
-                               estimate.left_per_m()};
+  DepthCalibration calibration = estimate.asCalibration();
+  calibration.name = options.name;
+  calibration.camera = seen.camera.withoutDistortion();
   if (!seen.corrected_by) {
     if (!estimate.worth_taking) throw InputError(options.input + ": " + estimate.reason);
     return calibration;

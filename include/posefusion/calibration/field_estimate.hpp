@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "posefusion/calibration/depth_field.hpp"
+#include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/calibration/pair_equations.hpp"
 #include "posefusion/calibration/view_pairs.hpp"
 
@@ -48,6 +48,9 @@ struct FieldEstimate {
   /// Why it is not worth taking as a step of a field that is in use: that the camera is off is no
   /// question any more, only whether pairs that were kept out agree better. Empty: it is.
   std::string doubtOfStep() const;
+
+  /// As one step of what is known of a camera, without its name and image.
+  DepthCalibration asCalibration() const;
 
   /// What the field is off by itself (1/m), by all that is not said by its covariance too.
   double left_per_m() const;
