@@ -5,6 +5,16 @@ from bench_report import Failed, call
 from bench_runs import PROGRAMS, Runs, note
 
 
+# What cameras may have besides the usual smooth field, or in its place: arguments of the simulator, and the most
+# that the error with calibration may be of that without.
+CAMERAS = {"no distortion": (("depth.distortion=0",), 1.03),
+           "stripes": (("depth.stripe_mm=6",), 1.05),
+           "bowl": (("depth.bowl_mm=20",), 1.05),
+           "drift": (("depth.drift_mm=8", "depth.drift_percent=50"), 1.05),
+           "time of flight": (("depth.kind=time_of_flight",), 1.05),
+           "active stereo": (("depth.kind=active_stereo",), 1.05)}
+
+
 class Calibration(Runs):
     def calibration(self):
         for seed in self.options.seeds:
@@ -21,6 +31,21 @@ class Calibration(Runs):
             run = self.run(f"{sequence.name}_calibrated", sequence, "--detector", "embedded", "--calibration", file)[0]
             self.camera_rows(f"{camera}, with the calibration of its first pass", sequence, run,
                              {"ate": 0.022, "live": 0.030, "false": 0, "median": 12, "p95": 35, "layers": 0.3})
+
+    def cameras(self):
+        """Other cameras than the one the estimator was made for: what it must not spoil."""
+        seed = self.options.seeds[0]
+        for camera, (settings, bar) in CAMERAS.items():
+            arguments = [word for setting in settings for word in ("--set", setting)]
+            sequence = self.simulated("loop_room", seed, None, "--set", f"depth.specimen={seed}", *arguments,
+                                      name=f"loop_room_{seed}_{camera.replace(' ', '_')}")
+            errors = [self.run(f"{sequence.name}_{mode}", sequence, "--detector", "recorded", "--set",
+                               f"calibration.mode={mode}")[1] for mode in ("none", "learn")]
+            (final, live), (learned, learned_live) = ((e["ate_rmse_m"], e["live"]["ate_rmse_m"]) for e in errors)
+            name = f"loop_room {seed}, {camera}"
+            self.row(f"{name}: ATE as measured", final, "m", digits=4, live=live)
+            self.row(f"{name}: ATE while it learns", learned, "m", digits=4, live=learned_live)
+            self.row(f"{name}: the second by the first", learned / final, "x", bar, digits=2, live=learned_live / live)
 
     def calibrate(self, name, sequence, run, file):
         note(f"calibrating {sequence.name}")

@@ -3,8 +3,44 @@
 
 #include <gtest/gtest.h>
 
+#include "small_camera.hpp"
+
 namespace pf {
 namespace {
+
+/// What the map, a wall at `wall_m`, says of a frame that is a plane at `seen_m`.
+std::vector<Background> beforeWall(float wall_m, float seen_m, const DepthSensor& sensor) {
+  RgbdFrame frame;
+  frame.camera = smallCamera();
+  const cv::Size size(frame.camera.width, frame.camera.height);
+  frame.color = cv::Mat(size, CV_8UC3, cv::Scalar::all(100));
+  const cv::Mat depth_m(size, CV_32FC1, cv::Scalar(seen_m));
+  SceneGrid grid;
+  sampleGrid(frame, depth_m, 40, grid);
+  ModelView view;
+  view.camera = frame.camera;
+  view.depth_m = cv::Mat(size, CV_32FC1, cv::Scalar(wall_m));
+  std::vector<Background> result;
+  compareWithModel(grid, view, Eigen::Isometry3d::Identity(), sensor, result);
+  return result;
+}
+
+TEST(CompareWithModel, WhatMayBeOneSurfaceIsForTheSensorToSay) {
+  // A decimetre before a wall 4 m away is nothing to a Kinect and a person to a time of flight
+  // camera.
+  DepthSensor precise;
+  precise.axial_1_m = 0.0003F;
+  precise.systematic_1_m = precise.step_1_m = 0.0F;
+  for (const Background cell : beforeWall(4.0F, 3.9F, DepthSensor())) {
+    EXPECT_EQ(cell, Background::agrees);
+  }
+  for (const Background cell : beforeWall(4.0F, 3.9F, precise)) {
+    EXPECT_EQ(cell, Background::nearer);
+  }
+  for (const Background cell : beforeWall(4.0F, 4.1F, precise)) {
+    EXPECT_EQ(cell, Background::farther);
+  }
+}
 
 TEST(MotionPredictor, StartsFromTheViewsOwnStamp) {
   // The camera moves steadily; the views come some frames late, now and then one is missing.

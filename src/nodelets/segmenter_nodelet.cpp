@@ -48,8 +48,10 @@ class SegmenterNodelet : public ChainNodelet {
 
   void start() override {
     Parameters parameters(getPrivateNodeHandle());
-    const SegmenterSettings settings = {parameters.config({"segmentation"}).segmentation};
-    segmenter_ = std::make_unique<pf::PeopleSegmenter>(settings.segmentation);
+    const pf::Config config = parameters.config({"segmentation", "sensor", "frame"});
+    const SegmenterSettings settings = {config.segmentation};
+    segmenter_ =
+        std::make_unique<pf::PeopleSegmenter>(config.segmentation, pf::depthSensorOf(config));
     lossless_ = parameters.flag("lossless", false);
     up_frame_ = plainFrame(parameters.text("up_frame", ""));
     const int queue = parameters.integer("queue_size", 3, {1, 10000});

@@ -15,11 +15,10 @@ constexpr float kClearly = 2.0F;  // tolerances between surfaces that are surely
 constexpr std::size_t kRowsAtOnce = 8;
 constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is predicted from
 
-/// Difference of depth that noise, the map's error and the pose's explain, metres: the noise of
-/// structured light grows with the square of the depth.
-float depthTolerance(float z_m) {
-  constexpr float kConstant_m = 0.02F, kPerDepth2 = 0.006F;  // the latter in 1/m
-  return kConstant_m + kPerDepth2 * z_m * z_m;
+/// Difference of depth that noise, the map's error and the pose's explain, metres.
+float depthTolerance(const DepthSensor& sensor, float z_m) {
+  constexpr float kPose_m = 0.01F, kSigmas = 4.0F;
+  return kPose_m + sensor.tolerance(z_m, kSigmas);
 }
 
 /// A rigid motion and a projection in floats.
@@ -31,14 +30,14 @@ struct Projection {
 
 /// Looks for a point of the grid's camera among the 3x3 pixels, `reach_px` apart, around its place
 /// in the view.
-Background comparePoint(const ModelView& view, const Projection& projection,
-                        const Eigen::Vector3f& point, int reach_px) {
+Background comparePoint(const ModelView& view, const DepthSensor& sensor,
+                        const Projection& projection, const Eigen::Vector3f& point, int reach_px) {
   const Eigen::Vector3f q = projection.rotation * point + projection.translation;
   if (q.z() <= kMinDepth_m) return Background::unknown;
   const int u = static_cast<int>(std::lround(projection.fx * q.x() / q.z() + projection.cx));
   const int v = static_cast<int>(std::lround(projection.fy * q.y() / q.z() + projection.cy));
   const cv::Mat& depth_m = view.depth_m;
-  const float tolerance = depthTolerance(q.z());
+  const float tolerance = depthTolerance(sensor, q.z());
   int known = 0, behind = 0, before = 0;
   bool recent = false;
   for (int dy = -reach_px; dy <= reach_px; dy += reach_px) {
@@ -69,7 +68,8 @@ Background comparePoint(const ModelView& view, const Projection& projection,
 }  // namespace
 
 void compareWithModel(const SceneGrid& grid, const ModelView& view,
-                      const Eigen::Isometry3d& T_view_camera, std::vector<Background>& result) {
+                      const Eigen::Isometry3d& T_view_camera, const DepthSensor& sensor,
+                      std::vector<Background>& result) {
   result.assign(grid.size(), Background::unknown);
   const PinholeCamera& camera = view.camera;
   const Projection projection{
@@ -82,7 +82,7 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
     const int last = static_cast<int>(end) * grid.cols;
     for (int cell = static_cast<int>(begin) * grid.cols; cell < last; ++cell) {
       if (!grid.hasDepth(cell)) continue;
-      result[cell] = comparePoint(view, projection, grid.point(cell), reach_px);
+      result[cell] = comparePoint(view, sensor, projection, grid.point(cell), reach_px);
     }
   });
 }

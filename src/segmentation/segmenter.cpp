@@ -63,8 +63,8 @@ struct PeopleSegmenter::State {
   void finish(const RgbdFrame& frame, int margin_px, Segmentation& result) const;
 };
 
-PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config)
-    : config_(config), state_(std::make_unique<State>()) {}
+PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor)
+    : config_(config), sensor_(sensor), state_(std::make_unique<State>()) {}
 PeopleSegmenter::~PeopleSegmenter() = default;
 
 /// Samples the frame. The cells of carried people count on the grid of the last frame: where this
@@ -172,7 +172,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   sampleMask(people.mask, frame.depth.size(), s.evidence.grid, s.evidence.shown);
   s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
-    compareWithModel(s.evidence.grid, *background, T_view_camera, s.evidence.background);
+    compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
   }
   mergeDetections(people, mayBeNew(people, s.evidence.shown, s.evidence.background),
                   s.evidence.grid, s.people);

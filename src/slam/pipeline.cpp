@@ -11,7 +11,7 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
     : config_(config),
       gate_(config.blur),
       detector_(std::move(detector)),
-      segmenter_(config.segmentation),
+      segmenter_(config.segmentation, depthSensorOf(config)),
       mapper_(config),
       loop_thread_(config, AnswerTime::after_lag) {}
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
@@ -153,6 +154,7 @@ std::vector<FallFrame> framesOf(const Options& options, const SavedMap& saved,
   const auto true_poses = truthOf(truth.trajectory, rows);
   Judge judge(map);
   const auto source = openTumFolder(options.sequence);
+  DepthCorrector corrector(saved.calibration ? saved.calibration->field : DepthField());
   std::vector<FallFrame> frames;
   auto row = rows.begin();
   while (auto next = source->next()) {
@@ -162,6 +164,7 @@ std::vector<FallFrame> framesOf(const Options& options, const SavedMap& saved,
     const auto pose = true_poses.find(row->stamp_ns);
     if (row->stamp_ns < first_fall_ns || pose == true_poses.end()) continue;
     const Eigen::Isometry3d T_map_camera = T_map_truth * pose->second;
+    next->frame.depth = corrector.inMetres(next->frame.depth, next->frame.depth_unit_m);
     frames.push_back(judge.judge(*row, next->frame, T_map_camera));
     frames.back().blurred = std::binary_search(truth.facts.blurred_ns.begin(),
                                                truth.facts.blurred_ns.end(), row->stamp_ns);

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/frame.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
@@ -32,7 +33,8 @@ struct Segmentation {
 /// forward between detections. Keeps the last mask and joints. Not thread safe.
 class PeopleSegmenter {
  public:
-  explicit PeopleSegmenter(const SegmentationConfig& config);
+  /// Of depth as `sensor` measures it.
+  explicit PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor = {});
   ~PeopleSegmenter();
 
   /// `flow` has been advanced to this frame (once for each frame, also while there is nobody): it
@@ -56,6 +58,7 @@ class PeopleSegmenter {
                                  const std::optional<Eigen::Vector3d>& up_camera);
 
   SegmentationConfig config_;
+  DepthSensor sensor_;
   std::unique_ptr<State> state_;
 };
 
