@@ -1,34 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/mapper.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stopwatch.hpp"
-#include "posefusion/segmentation/segmenter.hpp"
 
 namespace pf {
-namespace {
-
-// A guess that lies further from the last view than this sees too much that the view does not show.
-constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
-// The view is drawn as far as frames are tracked, and a match beyond that may still be near enough.
-constexpr float kMatchSigmas = 5.0F;
-
-/// Not less far than the segmenter looks for people, whatever the range of the map: who stands
-/// before a far wall is told by it.
-RenderOptions viewOptions(const DepthSensor& sensor, int fragment) {
-  const double range_m = sensor.max_depth_m;
-  RenderOptions options;
-  options.max_depth_m = std::max(
-      kFarthestPerson_m, range_m + sensor.tolerance(static_cast<float>(range_m), kMatchSigmas));
-  options.fragment = fragment;
-  return options;
-}
-
-}  // namespace
 
 /// Why the frame cannot follow the ones before; empty when it can.
 std::string Mapper::State::defect(const StaticFrame& still) const {
@@ -60,23 +39,6 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
 /// The place of a camera that is not the map's is not known.
 TrackingState Mapper::State::state() const {
   return sees_other_camera ? TrackingState::lost : localiser.state();
-}
-
-/// The last view where it serves, else one of its own.
-RenderedModel Mapper::State::modelFrom(const MapPose& pose) {
-  const Eigen::Isometry3d step = view.T_map_camera.inverse() * pose.T_map_camera;
-  if (view.fragment == pose.fragment && step.translation().norm() < kSameViewShift_m &&
-      angleOf(step) < kSameViewTurn_rad) {
-    return {model, view.T_map_camera};
-  }
-  model_elsewhere.assign(viewFrom(pose), sensor);
-  return {model_elsewhere, pose.T_map_camera};
-}
-
-const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
-  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment),
-                  elsewhere);
-  return elsewhere;
 }
 
 Location Mapper::State::locate(const StaticFrame& input) {
@@ -128,14 +90,6 @@ void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();
   showFrom(location.pose(), fill);
   seen.stamp_ns = view.stamp_ns = last_stamp_ns;
-}
-
-/// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
-void Mapper::State::showFrom(const MapPose& pose, bool fill) {
-  renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment), view);
-  model.assign(view, sensor, fill ? &frame.levels[0] : nullptr);
-  seen = view;
-  if (calibration) seen.depth_m = distorter.inMetres(view.depth_m, 1.0);
 }
 
 Mapper::Mapper(const Config& config) : state_(std::make_unique<State>(config)) {}
@@ -215,19 +169,6 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.map_version = state_->back_end.graph().version();
   status.map_full = state_->map.refused() > 0;
   return status;
-}
-
-const ModelView& Mapper::view() const {
-  return state_->state() == TrackingState::lost ? state_->nothing : state_->seen;
-}
-
-ModelView Mapper::render(const PinholeCamera& camera, const Eigen::Isometry3d& T_map_camera) const {
-  ModelView view;
-  RenderOptions options;
-  options.with_color = true;
-  options.age = SurfelAge::all;
-  SurfelRenderer().render(state_->map, camera, T_map_camera, options, view);
-  return view;
 }
 
 const SurfelMap& Mapper::map() const { return state_->map; }
