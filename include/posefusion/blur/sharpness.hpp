@@ -18,7 +18,7 @@ double scoreBlur(const cv::Mat& color);
 
 /// The score, and a measure that contrast does not change: blur takes fine detail only, less
 /// contrast or a dull scene takes coarse detail too. Fine detail is the mean square of the second
-/// difference at half the size, coarse detail that of the central difference at an eighth, both
+/// difference at about 320 pixels across, coarse detail that of the central difference at 80, both
 /// without the part of the sensor noise, which is estimated from the image (median version of
 /// J. Immerkaer, "Fast noise variance estimation", 1996). The smaller ratio of the two image axes
 /// counts, for a moving camera blurs along one. `color` is CV_8UC3 R G B.
