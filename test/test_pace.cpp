@@ -10,6 +10,7 @@
 #include "fusion_scene.hpp"
 #include "mapper_scene.hpp"
 #include "posefusion/map/render.hpp"
+#include "posefusion/slam/localiser.hpp"
 
 namespace pf {
 namespace {
@@ -140,7 +141,7 @@ class StandingCamera {
     config.shrink = 2;
     open_.assign(seen, cv::Mat(), config);
     RgbdFrame dark = seen;
-    dark.depth = cv::Mat::zeros(seen.depth.size(), seen.depth.type());
+    dark.depth = cv::Mat(seen.depth.size(), seen.depth.type(), cv::Scalar(0));
     covered_.assign(dark, cv::Mat(), config);
     open_.pace = covered_.pace = paceOf(rate_hz);
     fuseOften(40, open_, map_);
