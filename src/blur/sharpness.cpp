@@ -16,8 +16,9 @@ constexpr double kRoundingVariance = 1.0 / 12.0;
 // fine detail, from which an image has structure along an axis. Noise alone gives 1/8.
 constexpr double kMinCoarseDetail = 40.0;
 // Width of the image whose detail is fine: half a Kinect's. The same blur, an angle, then looks the
-// same in pictures of any size.
+// same in larger pictures; in smaller ones single pixels have more noise than detail.
 constexpr double kFineWidth = 320.0;
+constexpr int kLeastShrink = 2;
 
 double varianceOfLaplacian(const cv::Mat& grey) {
   cv::Mat response;
@@ -53,7 +54,6 @@ double noiseVariance(const cv::Mat& grey) {
 }
 
 cv::Mat shrunk(const cv::Mat& image, int factor) {
-  if (factor == 1) return image;
   cv::Mat small;
   const cv::Size size(std::max(1, image.cols / factor), std::max(1, image.rows / factor));
   cv::resize(image, small, size, 0, 0, cv::INTER_AREA);
@@ -80,7 +80,7 @@ Sharpness measureSharpness(const cv::Mat& color) {
   Sharpness result;
   result.laplacian_variance = varianceOfLaplacian(grey);
   result.dull = true;
-  const int shrink = std::max(1, static_cast<int>(std::lround(grey.cols / kFineWidth)));
+  const int shrink = std::max(kLeastShrink, static_cast<int>(std::lround(grey.cols / kFineWidth)));
   // The mean of 2x2 pixels has a quarter of the noise, the second difference six times that.
   const double noise = noiseVariance(grey) / (shrink * shrink);
   const double fine_noise = 6.0 * noise;
