@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "posefusion/blur/sharpness.hpp"
 #include "posefusion/slam/mapper.hpp"
 #include "simulated_sequence.hpp"
 
@@ -73,6 +75,35 @@ TEST(ImageSize, WhatCornersSayIsTheSameAsFarAsTheyHaveThePixels) {
       EXPECT_GT(ratio, 0.8) << width << " " << first;
     }
     EXPECT_LT(seen.error_m, 0.01) << width;
+  }
+}
+
+TEST(ImageSize, AWorkingPixelHasTheSameAngle) {
+  const FrameConfig config;
+  for (const int width : {320, 640, 1280, 1920}) {
+    const double focal_px = 525.0 * width / 640;
+    EXPECT_EQ(focal_px / shrinkFor(config, focal_px), 262.5) << width;
+  }
+  EXPECT_EQ(shrinkFor(config, 90.0), 1) << "it is not made larger";
+  EXPECT_EQ(shrinkFor({0.3, 5.0, 3}, 525.0), 3) << "as it is set";
+}
+
+TEST(ImageSize, TheSameBlurLooksTheSameInLargerPictures) {
+  cv::RNG random(5);
+  cv::Mat scene(480, 640, CV_8UC1);
+  random.fill(scene, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(scene, scene, {}, 3.0);
+  cv::normalize(scene, scene, 20, 230, cv::NORM_MINMAX);
+  for (const int smear_px : {1, 9}) {
+    double detail[2];
+    for (const int times : {1, 2}) {
+      cv::Mat large, color;
+      cv::resize(scene, large, {}, times, times, cv::INTER_CUBIC);
+      cv::blur(large, large, {smear_px * times, 1});
+      cv::cvtColor(large, color, cv::COLOR_GRAY2RGB);
+      detail[times - 1] = measureSharpness(color).fine_detail;
+    }
+    EXPECT_NEAR(detail[1] / detail[0], 1.0, 0.15) << smear_px;
   }
 }
 

@@ -76,7 +76,7 @@ TEST(LoopThread, ALostCameraIsFoundElsewhere) {
   ASSERT_GT(moved, 0.1) << "the test needs a camera that was carried";
   const Carried found = carry(AnswerTime::after_lag);
   ASSERT_EQ(found.status.state, TrackingState::tracking);
-  EXPECT_GT(found.frames, LoopConfig().answer_lag_frames) << "an answer is never early";
+  EXPECT_GT(found.frames, LoopConfig().answer_lag_s) << "an answer is never early";
   EXPECT_LT(found.frames, 40);
   EXPECT_LT((found.status.T_map_camera.translation() - room().pose(there).translation()).norm(),
             0.02);
@@ -150,8 +150,7 @@ class LoopExchanges : public testing::Test {
     auto owned = std::make_unique<FakeResponder>();
     closer = owned.get();
     mapper = std::make_unique<Mapper>(config);
-    exchange =
-        std::make_unique<LoopExchange>(config.loop.answer_lag_frames, time, std::move(owned));
+    exchange = std::make_unique<LoopExchange>(config.loop.answer_lag_s, time, std::move(owned));
   }
   void see(int index, bool covered = false) {
     StaticFrame input;

@@ -96,7 +96,7 @@ TEST(SurfelRenderer, UnstableSurfelsShowWhereNothingElseIs) {
 
 TEST(SurfelRenderer, InactiveSurfelsAreLeftOutWhenAsked) {
   MapConfig config;
-  config.active_window_frames = 5;
+  config.active_window_s = 5.0 / 30.0;
   SurfelMap map(config);
   map.advance();
   add(map, {{0, 0, 1.0F}});

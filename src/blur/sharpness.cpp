@@ -12,9 +12,13 @@ namespace {
 
 // Grey levels are whole numbers: rounding alone has this variance.
 constexpr double kRoundingVariance = 1.0 / 12.0;
-// Mean square of the central difference, in units of the noise variance of the full image, from
-// which an image has structure along an axis. Noise alone gives 1/32.
-constexpr double kMinCoarseDetail = 10.0;
+// Mean square of the central difference, in units of the noise variance of the image that has the
+// fine detail, from which an image has structure along an axis. Noise alone gives 1/8.
+constexpr double kMinCoarseDetail = 40.0;
+// Width of the image whose detail is fine: half a Kinect's. The same blur, an angle, then looks the
+// same in larger pictures; in smaller ones single pixels have more noise than detail.
+constexpr double kFineWidth = 320.0;
+constexpr int kLeastShrink = 2;
 
 double varianceOfLaplacian(const cv::Mat& grey) {
   cv::Mat response;
@@ -49,9 +53,9 @@ double noiseVariance(const cv::Mat& grey) {
   return std::max(kRoundingVariance, deviation * deviation);
 }
 
-cv::Mat halved(const cv::Mat& image) {
+cv::Mat shrunk(const cv::Mat& image, int factor) {
   cv::Mat small;
-  const cv::Size size(std::max(1, image.cols / 2), std::max(1, image.rows / 2));
+  const cv::Size size(std::max(1, image.cols / factor), std::max(1, image.rows / factor));
   cv::resize(image, small, size, 0, 0, cv::INTER_AREA);
   return small;
 }
@@ -76,16 +80,17 @@ Sharpness measureSharpness(const cv::Mat& color) {
   Sharpness result;
   result.laplacian_variance = varianceOfLaplacian(grey);
   result.dull = true;
-  const double noise = noiseVariance(grey);
+  const int shrink = std::max(kLeastShrink, static_cast<int>(std::lround(grey.cols / kFineWidth)));
   // The mean of 2x2 pixels has a quarter of the noise, the second difference six times that.
-  const double fine_noise = 6.0 / 4.0 * noise;
-  const cv::Mat half = halved(grey), eighth = halved(halved(half));
+  const double noise = noiseVariance(grey) / (shrink * shrink);
+  const double fine_noise = 6.0 * noise;
+  const cv::Mat small = shrunk(grey, shrink), smallest = shrunk(shrunk(small, 2), 2);
   const cv::Mat second = (cv::Mat_<float>(1, 3) << 1, -2, 1);
   const cv::Mat central = (cv::Mat_<float>(1, 3) << -1, 0, 1);
   for (const bool along_rows : {true, false}) {
-    const double coarse = meanSquareResponse(eighth, along_rows ? central : cv::Mat(central.t()));
+    const double coarse = meanSquareResponse(smallest, along_rows ? central : cv::Mat(central.t()));
     if (coarse < kMinCoarseDetail * noise) continue;
-    const double fine = meanSquareResponse(half, along_rows ? second : cv::Mat(second.t()));
+    const double fine = meanSquareResponse(small, along_rows ? second : cv::Mat(second.t()));
     const double ratio = std::max(0.0, fine - fine_noise) / coarse;
     result.fine_detail = result.dull ? ratio : std::min(result.fine_detail, ratio);
     result.dull = false;

@@ -2,6 +2,7 @@
 #include "posefusion/frame/working_frame.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/frame/depth_filter.hpp"
@@ -12,6 +13,8 @@ namespace {
 // Depth past the largest used still tells that the space before it is empty, up to here: no sensor
 // of a robot's measures farther indoors, and some report their largest number for "nothing".
 constexpr double kFarthest_m = 15.0;
+constexpr double kFocal_px = 262.5;  // of a Kinect at 320x240
+constexpr int kMostShrink = 8;
 
 /// 255 where no pixel of the block belongs to a person.
 void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
@@ -26,16 +29,22 @@ void shrinkStill(const cv::Mat& mask, const cv::Size& size, cv::Mat& still) {
 
 }  // namespace
 
+int shrinkFor(const FrameConfig& config, double focal_px) {
+  if (config.shrink > 0) return config.shrink;
+  return std::clamp(static_cast<int>(std::lround(focal_px / kFocal_px)), 1, kMostShrink);
+}
+
 void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config,
                           const DepthSensor& taken_by) {
   sensor = taken_by;
   sensor.min_depth_m = config.min_depth_m;
   sensor.max_depth_m = config.max_depth_m;
   full_camera = frame.camera;
-  camera = frame.camera.shrunk(config.shrink);
+  const int shrink = shrinkFor(config, frame.camera.fx);
+  camera = frame.camera.shrunk(shrink);
   const cv::Size size(camera.width, camera.height);
   depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthest_m), full_depth_m);
-  shrinkDepth(full_depth_m, config.shrink, sensor, depth_m);
+  shrinkDepth(full_depth_m, shrink, sensor, depth_m);
   cv::threshold(full_depth_m, full_depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
   cv::threshold(depth_m, beyond_m, config.max_depth_m, 0, cv::THRESH_TOZERO);
   cv::threshold(depth_m, depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
@@ -47,7 +56,7 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   smoothDepth(depth_m, sensor, smooth_m_);
   computeNormals(smooth_m_, camera, sensor, finest.normal_x, finest.normal_y, finest.normal_z);
   finest.depth_m = depth_m;
-  shrinkToIntensity(frame.color, config.shrink, finest.intensity);
+  shrinkToIntensity(frame.color, shrink, finest.intensity);
   shrinkStill(mask, size, finest.still);
   for (int i = 1; i < kLevels; ++i) {
     const FrameLevel& finer = levels[i - 1];

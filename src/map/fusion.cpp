@@ -114,7 +114,7 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
   findPeople(options.in_map_mask, options.input_depth_m, frame, s.full_m, s.evidence.person_m);
   s.evidence.near_people.clear();
   if (!s.people_m.empty()) s.evidence.near_people.assign(s.people_m, frame.camera);
-  map.advance();
+  map.advance(frame.pace);
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);
   counts.removed = clean(map);

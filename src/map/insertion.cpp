@@ -10,9 +10,9 @@
 namespace pf {
 namespace {
 
-// Support that what stands before a known surface begins below nothing with: somebody whom the
-// detector misses for a second shall not become part of the room.
-constexpr float kNewcomerFrames = 30.0F;
+// Support (frames at 30 Hz) that what stands before a known surface begins below nothing with:
+// somebody whom the detector misses for a second shall not become part of the room.
+constexpr float kNewcomer = 30.0F;
 
 bool isWanted(const WorkingFrame& frame, const Evidence& evidence, int u, int v) {
   return evidence.explained[v * frame.camera.width + u] == kUnexplained &&
@@ -38,7 +38,7 @@ void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const Fus
   const float cosine = -(nx * x + ny * y + nz * z) / std::sqrt(x * x + y * y + z * z);
   s.radius[i] = footprintRadius(z, fx, cosine);
   s.weight[i] = measurementWeight(frame.sensor, z);
-  s.confidence[i] = 1.0F;
+  s.confidence[i] = frame.pace.worth();
   s.violations[i] = 0;
 }
 
@@ -65,7 +65,7 @@ void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_
       for (int u = 0; u < cols; ++u) {
         if (isWanted(frame, evidence, u, v)) {
           writeSurfel(frame, to_map, options, u, v, next, surfels);
-          if (evidence.known_behind.has(u, v)) surfels.confidence[next] -= kNewcomerFrames;
+          if (evidence.known_behind.has(u, v)) surfels.confidence[next] -= kNewcomer;
           ++next;
         }
       }

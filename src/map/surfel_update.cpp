@@ -17,12 +17,12 @@ constexpr float kLayerTolerances = 3.0F;
 constexpr float kParallelCosine = 0.9F;
 // A far measurement is near enough to both layers, and would keep both. What was made so much
 // earlier was made in another pass; within one, surfels as far apart are an edge.
-constexpr std::int32_t kAnotherPass_frames = 100;
+constexpr double kAnotherPass_s = 10.0 / 3.0;
 // Few stable surfels are doubled: those of a block are looked at once in so many frames.
 constexpr int kTurns = 4;
 // Who is found now may have been in view, and mapped, for so long; that must be gone before it is
 // older.
-constexpr std::int32_t kUnnoticed_frames = 45;
+constexpr double kUnnoticed_s = 1.5;
 constexpr int kUnnoticedViolations = 2;  // a frame
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
@@ -41,7 +41,10 @@ SurfelUpdate::SurfelUpdate(const WorkingFrame& frame, const Eigen::Isometry3d& T
       to_camera_(T_map_camera.inverse()),
       to_map_(T_map_camera),
       min_cosine_(static_cast<float>(std::cos(map.config().max_normal_angle_rad))),
-      max_weight_(static_cast<float>(map.config().max_weight)) {}
+      max_weight_(static_cast<float>(map.config().max_weight)),
+      worth_(frame.pace.worth()),
+      another_pass_(frame.pace.framesIn(kAnotherPass_s)),
+      unnoticed_(frame.pace.framesIn(kUnnoticed_s)) {}
 
 SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays& s) const {
   Result result;
@@ -108,7 +111,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (p.facing > 0 && cosine < min_cosine_) return false;
   const bool stable = map_.isStable(s, i);
   explain(p, stable ? s.created[i] : map_.frame());
-  if (!stable || (result.stable_too && s.created[i] >= kAnotherPass_frames)) {
+  if (!stable || (result.stable_too && s.created[i] >= another_pass_)) {
     result.supported.push_back(supportedAt(s, i, p));
   }
   merge(s, i, p, measured, n, cosine);
@@ -118,7 +121,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
 /// What was made close to somebody not long ago, and is not seen now, may be what was mapped of
 /// them before they were found: it goes also where nothing is seen behind it.
 void SurfelUpdate::doubt(SurfelArrays& s, std::size_t i, const Place& p) const {
-  const bool is_young = s.created[i] > map_.frame() - kUnnoticed_frames;
+  const bool is_young = s.created[i] > map_.frame() - unnoticed_;
   if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) violate(s, i, kUnnoticedViolations);
 }
 
@@ -144,10 +147,10 @@ void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
     const std::size_t i = seen.surfel;
     const bool stable = map_.isStable(s, i);
     if (stable && !options_.may_remove_stable) continue;
-    if (!isDoubled(seen, s.created[i] - (stable ? kAnotherPass_frames : 1))) continue;
+    if (!isDoubled(seen, s.created[i] - (stable ? another_pass_ : 1))) continue;
     // Its support is taken back, and as much of that before.
     const int taken = 2 * (stable ? kTurns : 1);
-    const float left = std::max(0.0F, s.confidence[i] - static_cast<float>(taken));
+    const float left = std::max(0.0F, s.confidence[i] - worth_ * static_cast<float>(taken));
     s.confidence[i] = std::min(s.confidence[i], left);
     s.violations[i] += taken;
   }
@@ -211,7 +214,7 @@ void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float m
                          const Eigen::Vector3f& n, float cosine) const {
   s.seen[i] = map_.frame();
   s.violations[i] = std::max(0, s.violations[i] - 1);
-  s.confidence[i] += 1.0F;
+  s.confidence[i] += worth_;
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
   const float gain = measurementWeight(frame_.sensor, measured);

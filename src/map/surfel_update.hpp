@@ -111,6 +111,8 @@ class SurfelUpdate {
   Projection projection_;
   RigidMotion to_camera_, to_map_;
   float min_cosine_, max_weight_;
+  float worth_;                            // of the frame, see Pace
+  std::int32_t another_pass_, unnoticed_;  // frames
 };
 
 }  // namespace pf

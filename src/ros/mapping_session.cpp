@@ -50,8 +50,7 @@ MappingSession::MappingSession(const MappingSettings& settings,
       is_continued_(settings.continue_map),
       saver_(settings.saver),
       mapper_(std::make_unique<pf::Mapper>(settings.config)),
-      loops_(settings.config.loop.answer_lag_frames, answerTime(settings.lossless),
-             std::move(closer)) {
+      loops_(settings.config.loop.answer_lag_s, answerTime(settings.lossless), std::move(closer)) {
   std::optional<pf::DepthCalibration> known;
   if (!settings.calibration_file.empty()) {
     known = pf::loadCalibration(settings.calibration_file);

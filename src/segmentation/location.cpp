@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "posefusion/core/pace.hpp"
 #include "posefusion/segmentation/mapped_people.hpp"
 
 namespace pf {
@@ -26,7 +27,7 @@ constexpr float kKnownBefore = 0.5F;   // it knows this part of the cells ...
 constexpr float kNearerBefore = 0.7F;  // ... of which this part stands before it
 
 // A person who is part of the map by mistake.
-constexpr double kInMapFrames = 10;     // for so long after a sure detection
+constexpr double kInMap_s = 1.0 / 3.0;  // for so long after a sure detection
 constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
 constexpr float kInMapPart = 0.6F;      // ... this part agrees, for a person to be in the map
 
@@ -130,7 +131,7 @@ bool standsBeforeMap(const std::vector<int>& cells, const std::vector<Background
   return isKnown(vote, cells) && vote.nearer > kNearerBefore * vote.known;
 }
 
-bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked) {
+bool locatePerson(const Evidence& evidence, double carry_s, TrackedPerson& tracked) {
   liftDetected(evidence, tracked);
   Body& body = tracked.body;
   MapVote vote = voteOf(body.seeds, evidence.background);
@@ -143,7 +144,7 @@ bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tra
     tracked.detection = -1;
   }
   if (tracked.fresh) tracked.in_map = in_map && isSure(tracked.person);
-  if (tracked.unseen > kInMapFrames) tracked.in_map = false;
+  if (tracked.unseen > Pace::kUsual_hz * kInMap_s) tracked.in_map = false;
   if (in_map && tracked.fresh && !tracked.in_map) return false;
   if (!tracked.in_map) {
     const auto agrees = [&](int cell) { return evidence.background[cell] == Background::agrees; };
@@ -151,7 +152,7 @@ bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tra
     dropCells(agrees, body.shown);
   }
   body.anchors = cellsBeforeMap(evidence, tracked);
-  if (tracked.unseen > carry_frames) return false;
+  if (tracked.unseen > Pace::kUsual_hz * carry_s) return false;
   body.anchors.insert(body.anchors.end(), body.shown.begin(), body.shown.end());
   if (body.seeds.empty() && body.anchors.size() < kMinMaskCells) return false;
   if (body.depth_m <= 0.0F) body.depth_m = tracked.depth_m;

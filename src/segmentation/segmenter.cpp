@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "posefusion/core/pace.hpp"
 #include "posefusion/segmentation/cut_grid.hpp"
 #include "posefusion/segmentation/energy.hpp"
 #include "posefusion/segmentation/location.hpp"
@@ -18,10 +19,11 @@ namespace pf {
 namespace {
 
 constexpr double kMinDepth_m = 0.25;
-constexpr float kUnlabelledFading = 0.6F;  // of the likelihood of joints outside the mask ...
+constexpr float kUnlabelledFading =
+    0.6F;  // at 30 Hz, of the likelihood of joints outside the mask ...
 constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
 
-// How much each frame without a detection ages a carried person.
+// How much each frame (at 30 Hz) without a detection ages a carried person.
 constexpr double kAgeing = 1.0;
 constexpr double kConfirmedAgeing = 0.25;  // the map shows that somebody stands before it
 constexpr double kBlindAgeing = 3.0;       // no map: the mask may leak into furniture unnoticed
@@ -29,12 +31,13 @@ constexpr double kBlindAgeing = 3.0;       // no map: the mask may leak into fur
 constexpr double kMarginWidth_px = 640.0;  // image width that margin_px is given for
 
 /// Carried joints that the mask does not hold have lost their person: they fade, then go.
-void fadeLostJoints(const SceneGrid& grid, const std::vector<std::uint8_t>& labels,
+void fadeLostJoints(const SceneGrid& grid, const std::vector<std::uint8_t>& labels, float worth,
                     Person& person) {
+  const float fading = std::pow(kUnlabelledFading, worth);
   for (Keypoint& joint : person.joints) {
     const int cell = joint.p > 0.0F ? grid.cellAt(joint.u, joint.v) : -1;
     if (cell < 0 || labels[cell] != 0) continue;
-    joint.p *= kUnlabelledFading;
+    joint.p *= fading;
     if (joint.p < kFadedLikelihood) joint.p = 0.0F;
   }
 }
@@ -52,9 +55,11 @@ struct PeopleSegmenter::State {
   PaperCutter paper_cutter;
   std::vector<std::uint8_t> labels;
   int last_id = 0;
+  PaceMeter pace_meter;
+  float worth = 1.0F;  // of the frame, see Pace
 
   void takeGrid(const RgbdFrame& frame, int grid_width);
-  void locate(int carry_frames);
+  void locate(double carry_s);
   void markCarriedMasks();
   void markShownPeople();
   void cut(const SegmentationConfig& config);
@@ -77,10 +82,10 @@ void PeopleSegmenter::State::takeGrid(const RgbdFrame& frame, int grid_width) {
   if (sizeOf(evidence.grid) != last) people.clear();
 }
 
-void PeopleSegmenter::State::locate(int carry_frames) {
+void PeopleSegmenter::State::locate(double carry_s) {
   std::vector<TrackedPerson> located;
   for (TrackedPerson& tracked : people) {
-    if (!locatePerson(evidence, carry_frames, tracked)) continue;
+    if (!locatePerson(evidence, carry_s, tracked)) continue;
     if (tracked.id == 0) tracked.id = ++last_id;
     tracked.person.id = tracked.id;
     located.push_back(std::move(tracked));
@@ -136,8 +141,8 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
   for (TrackedPerson& tracked : people) {
     const bool confirmed = standsBeforeMap(tracked.cells, evidence.background);
     const bool blind = !with_map && !tracked.fresh;
-    tracked.unseen += confirmed ? kConfirmedAgeing : blind ? kBlindAgeing : kAgeing;
-    fadeLostJoints(evidence.grid, labels, tracked.person);
+    tracked.unseen += worth * (confirmed ? kConfirmedAgeing : blind ? kBlindAgeing : kAgeing);
+    fadeLostJoints(evidence.grid, labels, worth, tracked.person);
   }
   const auto isNobody = [](const TrackedPerson& t) { return t.cells.size() < kMinMaskCells; };
   people.erase(std::remove_if(people.begin(), people.end(), isNobody), people.end());
@@ -163,6 +168,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
                                       const std::optional<Eigen::Vector3d>& up_camera) {
   if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   State& s = *state_;
+  s.worth = s.pace_meter.add(frame.stamp_ns).worth();
   Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) T_view_camera = s.motion.predict(*background, frame.stamp_ns);
@@ -175,9 +181,9 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
     compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
   }
   mergeDetections(people, mayBeNew(people, s.evidence.shown, s.evidence.background),
-                  s.evidence.grid, s.people);
+                  s.evidence.grid, s.worth, s.people);
   s.planes.find(s.evidence.grid, s.evidence.flatness);
-  s.locate(config_.carry_frames);
+  s.locate(config_.carry_s);
   if (s.people.empty()) return result;
   doubtTrunks(s.people, s.evidence.grid, s.evidence.flatness, s.evidence.background);
   s.cut(config_);

@@ -14,7 +14,7 @@ constexpr float kMaxDeviation = 0.019F;  // of a joint's flow from its person's,
 constexpr float kReachOutside = 0.3F;
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints
 constexpr float kMissedJointFading = 0.6F;  // likelihood of a joint that a detection missed ...
-constexpr float kFrameFading = 0.93F;       // ... or, where every frame brings a detection, this,
+constexpr float kFrameFading = 0.93F;  // ... or, where every frame (at 30 Hz) brings one, this,
 constexpr float kMinKeptLikelihood = 0.1F;  // and which is kept while it was above this
 
 float medianOf(std::vector<float>& values) {
@@ -109,11 +109,13 @@ int findContinued(const Person& detected, const SceneGrid& grid, const std::vect
 
 /// Kept joints fade, so that they go after a few detections without them. Where detections come
 /// with every frame, a joint that was seen better not long ago is kept too.
-void continuePerson(const Person& detected, bool with_every_frame, TrackedPerson& tracked) {
+void continuePerson(const Person& detected, bool with_every_frame, float worth,
+                    TrackedPerson& tracked) {
   const Person old = tracked.person;
+  const float fading = with_every_frame ? std::pow(kFrameFading, worth) : kMissedJointFading;
   tracked.person = detected;
   for (int j = 0; j < kJointCount; ++j) {
-    const float kept = old.joints[j].p * (with_every_frame ? kFrameFading : kMissedJointFading);
+    const float kept = old.joints[j].p * fading;
     const bool is_better = with_every_frame && kept > detected.joints[j].p;
     if (detected.joints[j].p > 0.0F && !is_better) continue;
     if (old.joints[j].p <= kMinKeptLikelihood) continue;
@@ -151,7 +153,7 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
 }
 
 void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,
-                     const SceneGrid& grid, std::vector<TrackedPerson>& people) {
+                     const SceneGrid& grid, float worth, std::vector<TrackedPerson>& people) {
   std::vector<int> holder(grid.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (int cell : people[i].cells) holder[cell] = static_cast<int>(i);
@@ -165,7 +167,7 @@ void mergeDetections(const People& detected, const std::vector<bool>& may_be_new
       people.emplace_back();
       people.back().person = person;
     } else {
-      continuePerson(person, !detected.mask.empty(), people[continued]);
+      continuePerson(person, !detected.mask.empty(), worth, people[continued]);
     }
     TrackedPerson& tracked = continued < 0 ? people.back() : people[continued];
     tracked.fresh = true;

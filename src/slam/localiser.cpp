@@ -23,11 +23,11 @@ constexpr double kMostCorners = 0.8;  // part of them that agree
 // To close a loop by, which the graph takes for what its covariance says, fewer are enough.
 constexpr int kEnoughCorners = 40;
 constexpr double kHalf = 0.5;
-constexpr double kMaxReckonedStep_m = 0.04, kMaxReckonedStep_rad = 0.06;
+constexpr double kMaxReckoned_m_s = 1.2, kMaxReckoned_rad_s = 1.8;
 // A blurred frame is not told where its alignment needs its corners, or they contradict it by more:
 // in a turn they do not, in a fall they do.
 constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
-constexpr int kProbationFrames = 60;
+constexpr double kProbation_s = 2.0;
 
 }  // namespace
 
@@ -36,6 +36,7 @@ Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
 Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns, const MapPose& pose,
                           const Brightness& brightness) {
   reset();
+  pace_ = frame.pace;
   previous_.fragment = pose.fragment;
   Location location;
   location.T_map_camera = location.tracking.T_map_camera = pose.T_map_camera;
@@ -49,6 +50,7 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns, cons
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                            bool forced, const ModelView& view, const MapRenderers& render) {
   Location location;
+  pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
   const PosePrior prior = predict(location.motion, elapsed_s);
@@ -158,7 +160,7 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   location.T_map_camera = location.tracking.T_map_camera;
   location.located = true;
   location.outcome = FrameOutcome::fused;
-  location.is_recent_return = frames_since_return_ < kProbationFrames;
+  location.is_recent_return = frames_since_return_ < pace_.framesIn(kProbation_s);
   location.state = state_ = TrackingState::tracking;
   if (elapsed_s > 0) {
     previous_.velocity =
@@ -185,7 +187,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
       (motion.found && motion.inliers >= kManyCorners &&
        motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
        untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
-       isWithin(motion.T_before_after, kMaxReckonedStep_m, kMaxReckonedStep_rad));
+       isWithin(motion.T_before_after, kMaxReckoned_m_s * pace_.frame_s,
+                kMaxReckoned_rad_s * pace_.frame_s));
   if (location.outcome == FrameOutcome::forced) {
     const Eigen::Isometry3d off = prior.T_map_camera.inverse() * location.tracking.T_map_camera;
     location.located = location.tracking.free_directions == 0 &&
@@ -201,7 +204,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
     ++reckoned_in_a_row_;
     located_.T_map_camera = previous_.T_map_camera;
   }
-  const bool lost = !location.located && untrusted_in_a_row_ >= config_.lost_after_frames;
+  const bool lost =
+      !location.located && untrusted_in_a_row_ >= pace_.framesIn(config_.lost_after_s);
   location.state = state_ = lost ? TrackingState::lost : TrackingState::doubtful;
   location.fragment = located_.fragment;
   location.T_map_camera = located_.T_map_camera;
@@ -229,7 +233,7 @@ void Localiser::remember(const WorkingFrame& frame, const SparseFlow& flow, cons
   if (!agree(prior.T_map_camera, previous_.T_map_camera)) {
     landmarks_.move(previous_.T_map_camera * prior.T_map_camera.inverse());
   }
-  landmarks_.update(flow, {frame.full_depth_m, frame.full_camera, frame.sensor},
+  landmarks_.update(flow, {frame.full_depth_m, frame.full_camera, frame.sensor, frame.pace},
                     previous_.T_map_camera, location.outcome == FrameOutcome::fused);
   const FrameLevel& coarse = frame.levels[kLevels - 1];
   previous_.stamp_ns = stamp_ns;

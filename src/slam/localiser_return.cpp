@@ -12,10 +12,11 @@ namespace {
 
 // Of the frame before the first: no flow begins there, and trusted_ns_ is another one.
 constexpr std::int64_t kNoFrame = -1;
-// After a loss an alignment has to look better than usual, so often in a row, before it is
+// After a loss an alignment has to look better than usual, in so many frames in a row, before it is
 // believed.
-constexpr int kProofs = 10;
-constexpr int kProofsOfPlace = 3;  // where the place was already verified
+constexpr double kProof_s = 1.0 / 3.0;
+constexpr double kProofOfPlace_s = 0.1;  // where the place was already verified
+constexpr int kFewestProofs = 2;         // one frame fits none before it
 constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
 constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
 
@@ -30,6 +31,10 @@ constexpr double kMaxForcedWay_m = 0.12;
 // place that was searched. Of what is left to see, corners often tell alone, and some lie on people
 // who were missed.
 constexpr double kLittleView = 0.4;
+
+int proofsIn(double seconds, const Pace& pace) {
+  return std::max(kFewestProofs, pace.framesIn(seconds));
+}
 
 /// Says how badly a pose is known that little of the picture tells of; empty: well enough.
 std::string poorlyKnown(const WorkingFrame& frame, const TrackingResult& tracking) {
@@ -97,6 +102,7 @@ void Localiser::beginLost(const MapPose& pose, const Brightness& brightness) {
 /// less, and an alignment that slid along a wall or a floor looks right to it in every frame.
 void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
                       const MapRenderers& render) {
+  const int needed = proofsIn(kProof_s, pace_);
   // A blurred frame proves nothing, but what was proven goes on through it.
   const bool is_blurred = location.outcome == FrameOutcome::forced;
   const bool looks_right = (is_blurred || location.outcome == FrameOutcome::fused) &&
@@ -110,8 +116,8 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   // A place that was verified may be left for a view that hardly tells where it is from.
   const bool is_unsure =
       is_place_verified_ && positionSigma(location.tracking) > VerifyLimits().max_sigma_m;
-  if (is_unsure) proofs_ = std::min(proofs_, kProofs - 1);
-  if (proofs_ >= kProofs) {
+  if (is_unsure) proofs_ = std::min(proofs_, needed - 1);
+  if (proofs_ >= needed) {
     const PlaceDoubt doubt = is_place_verified_
                                  ? PlaceDoubt::none
                                  : askStrictly(frame, location.tracking, render.view).doubt;
@@ -122,13 +128,13 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
     }
     proofs_ = 0;
     location.outcome = FrameOutcome::disagrees;
-    location.detail = "after " + std::to_string(kProofs) +
+    location.detail = "after " + std::to_string(needed) +
                       " frames, the map from there: " + std::string(name(doubt));
   }
   // Good enough to track on is not good enough to come back: only `trust` lets a frame be fused.
   if (location.outcome == FrameOutcome::fused) {
     location.outcome = FrameOutcome::unproven;
-    location.detail = std::to_string(proofs_) + " of " + std::to_string(kProofs) + " frames";
+    location.detail = std::to_string(proofs_) + " of " + std::to_string(needed) + " frames";
   }
   previous_.T_map_camera = looks_right ? location.tracking.T_map_camera : prior.T_map_camera;
   previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
@@ -147,7 +153,7 @@ void Localiser::suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned
   previous_.T_map_camera = T_map_now;
   previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
   previous_.velocity.setZero();
-  proofs_ = kProofs - kProofsOfPlace;
+  proofs_ = proofsIn(kProof_s, pace_) - proofsIn(kProofOfPlace_s, pace_);
   is_suggested_ = is_place_verified_ = true;
 }
 

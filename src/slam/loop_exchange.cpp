@@ -13,7 +13,7 @@ void LoopExchange::serve(Mapper& mapper) {
     asked_.push_back({number_, question->place != nullptr});
     responder_->ask(std::move(*question));
   }
-  while (isDue()) takeOne(mapper);
+  while (isDue(mapper)) takeOne(mapper);
   ++number_;
 }
 
@@ -26,9 +26,11 @@ void LoopExchange::reset() {
   responder_->forget();
 }
 
-bool LoopExchange::isDue() const {
+bool LoopExchange::isDue(const Mapper& mapper) const {
   if (asked_.empty()) return false;
-  if (time_ == AnswerTime::after_lag) return number_ >= asked_.front().number + lag_frames_;
+  if (time_ == AnswerTime::after_lag) {
+    return number_ >= asked_.front().number + mapper.pace().framesIn(lag_s_);
+  }
   return responder_->isReady();
 }
 

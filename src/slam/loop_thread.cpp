@@ -48,7 +48,6 @@ class ThreadResponder : public LoopResponder {
 }  // namespace
 
 LoopThread::LoopThread(const Config& config, AnswerTime time)
-    : LoopExchange(config.loop.answer_lag_frames, time, std::make_unique<ThreadResponder>(config)) {
-}
+    : LoopExchange(config.loop.answer_lag_s, time, std::make_unique<ThreadResponder>(config)) {}
 
 }  // namespace pf

@@ -108,6 +108,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   if (s.view.empty()) s.camera = input.frame.camera;
   const std::int64_t before_ns = std::exchange(s.last_stamp_ns, input.frame.stamp_ns);
   Stopwatch watch;
+  s.frame.pace = s.pace_meter.add(s.last_stamp_ns);
   s.frame.assign(input.frame, input.mask, s.config.frame, s.sensor);
   Location location = s.locate(input);
   s.countLostTime(location, before_ns);
@@ -172,6 +173,8 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
 }
 
 const SurfelMap& Mapper::map() const { return state_->map; }
+
+const Pace& Mapper::pace() const { return state_->frame.pace; }
 
 void Mapper::place(const Eigen::Isometry3d& T_world_map) { state_->T_world_map = T_world_map; }
 

@@ -12,7 +12,7 @@ constexpr double kMostElapsed_s = 0.5;
 // Where people or a hand leave less of the view than this, the camera is covered: the place is not
 // one that nobody knows, and a piece of map would be made of scraps.
 constexpr double kOpenView = 0.25;
-constexpr int kFramesToPlace = 15;  // between two questions where the fragment lies
+constexpr double kToPlace_s = 0.5;  // between two questions where the fragment lies
 // Two answers in a row that place the fragment alike are believed.
 constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
 
@@ -70,7 +70,7 @@ std::shared_ptr<const SurfelMap> Mapper::State::searchedMap() const {
 /// Asks now and then where in the rest of the map the fragment lies.
 void Mapper::State::askForFragment() {
   if (isPlaceKnown() || --frames_to_place > 0 || place_is_asked) return;
-  frames_to_place = kFramesToPlace;
+  frames_to_place = frame.pace.framesIn(kToPlace_s);
   askForPlace();
   if (!place_is_asked) return;
   const Keyframe& last = back_end.graph().keyframes().back();

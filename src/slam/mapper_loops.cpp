@@ -184,7 +184,7 @@ void Mapper::load(SavedMap saved, MapUse use) {
   s.T_world_map = saved.T_world_map;
   s.back_end = BackEnd(std::move(graph), std::move(saved.frames));
   s.camera = saved.camera;
-  s.frame.camera = saved.camera.shrunk(s.config.frame.shrink);
+  s.frame.camera = saved.camera.shrunk(shrinkFor(s.config.frame, saved.camera.fx));
   for (KeyframeView& view : saved.views) {
     fit(view, {s.frame.camera.width, s.frame.camera.height});
     view.camera = s.frame.camera;

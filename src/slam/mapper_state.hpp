@@ -49,6 +49,7 @@ struct Mapper::State {
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
   PinholeCamera camera;            ///< of the frames of the map, full size
   bool sees_other_camera = false;  ///< the last frame was of another one
+  PaceMeter pace_meter;
   WorkingFrame frame;
   cv::Mat input_depth_m;      ///< of the frame, before people were taken out
   ModelView view, elsewhere;  ///< from the last trusted pose, from another guess

@@ -10,13 +10,13 @@ namespace {
 // Depth around a corner is the mean of what lies so many cornerPixel() around it, of which this
 // share must be there.
 constexpr double kReach = 2.0, kMinDepths = 0.12;
-// A corner that is elsewhere by more than this (cornerPixel()) in some frames moves by itself.
+// A corner that is elsewhere by more than this (cornerPixel()) in some frames (at 30 Hz) moves by
+// itself.
 constexpr double kMissed = 3.0;
 constexpr float kMissedSigmas = 5.0F;
-constexpr int kMostMisses = 3;
-// The mean forgets what is older than about so many frames: the place follows the map as fusion
-// moves it.
-constexpr double kMostFrames = 30.0;
+constexpr float kMostMisses = 3.0F;
+// The mean forgets what is older than about so long: the place follows the map as fusion moves it.
+constexpr double kMemory_s = 1.0;
 
 /// Does a frame that sees a corner at `pixel`, at depth z (m), see it where the landmark is?
 bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
@@ -63,6 +63,7 @@ const Landmark* Landmarks::find(std::uint32_t id) const {
 void Landmarks::update(const SparseFlow& flow, const DepthPicture& seen,
                        const Eigen::Isometry3d& T_map_camera, bool believed) {
   const Eigen::Isometry3d T_camera_map = T_map_camera.inverse();
+  const double most_before = seen.pace.framesIn(kMemory_s) - 1.0;
   next_.clear();
   for (std::size_t i = 0; i < flow.ids.size(); ++i) {
     const cv::Point2f& pixel = flow.after[i];
@@ -74,8 +75,8 @@ void Landmarks::update(const SparseFlow& flow, const DepthPicture& seen,
       const bool right = known == nullptr || agrees(T_camera_map * known->at, pixel, z, seen);
       const double sigma_m = seen.sensor.sigma(static_cast<float>(z));
       const double weight = 1.0 / (sigma_m * sigma_m);
-      landmark.misses += right ? 0 : 1;
-      landmark.weight = std::min(landmark.weight, (kMostFrames - 1.0) * weight);
+      landmark.misses += right ? 0.0F : seen.pace.worth();
+      landmark.weight = std::min(landmark.weight, most_before * weight);
       if (right) {
         const Eigen::Vector3d at = T_map_camera * seen.camera.unproject(pixel.x, pixel.y, z);
         landmark.at = (landmark.weight * landmark.at + weight * at) / (landmark.weight + weight);

@@ -9,14 +9,15 @@
 namespace pf {
 namespace {
 
-// A surfel that so many frames have supported counts fully. Until then it may belong to somebody
-// who moves and was not masked. It never counts for nothing: a turn shows little but new surfels.
-constexpr float kFullSupportFrames = 30.0F;
+// A surfel that so many frames (at 30 Hz) have supported counts fully. Until then it may belong to
+// somebody who moves and was not masked. It never counts for nothing: a turn shows little but new
+// surfels.
+constexpr float kFullSupport = 30.0F;
 constexpr float kLeastWeight = 0.2F;
 constexpr float kFillSupport = 1.0F;
 
 float weightOf(float support) {
-  return std::clamp(support * (1.0F / kFullSupportFrames), kLeastWeight, 1.0F);
+  return std::clamp(support * (1.0F / kFullSupport), kLeastWeight, 1.0F);
 }
 
 /// Mean over the nearest surface of a 2x2 block of `fine`, into pixel (u, v) of `coarse`.

@@ -59,7 +59,7 @@ class ChainCalibration : public ChainSaving {
 };
 
 TEST_F(ChainCalibration, TooFewKeyframesAreNamed) {
-  chain->set("loop/answer_lag_frames", 1);
+  chain->set("loop/answer_lag_s", 0.033);
   ASSERT_TRUE(chain->load());
   EXPECT_NE(chain->call("calibrate").message.find("there is no map"), std::string::npos);
   process(0);
@@ -81,7 +81,7 @@ TEST_F(ChainCalibration, WhatIsLearnedIsToldAndKept) {
     return answer;
   });
   chain->set("camera_serial", std::string("12/34"));
-  chain->set("loop/answer_lag_frames", 1);
+  chain->set("loop/answer_lag_s", 0.033);
   const Diagnostics diagnostics(*chain);
   ASSERT_TRUE(chain->loadWithoutCloser());
   process(0);

@@ -222,7 +222,7 @@ TEST(ChainCloser, FusionGoesWhileItWaitsForAnAnswer) {
   chain.set("closer_timeout_s", 600.0);  // no test would last so long
   const FakeCloser closer(chain);
   ASSERT_TRUE(chain.loadWithoutCloser());
-  const int lag = loopyConfig().loop.answer_lag_frames;
+  const int lag = pf::Pace().framesIn(loopyConfig().loop.answer_lag_s);
   for (int i = 0; i < lag; ++i) process(chain, i);
   chain.send(toMessages(toAndFro(lag)));  // the answer to the first keyframe is due
   ros::WallDuration(0.5).sleep();

@@ -35,7 +35,7 @@ TEST(ChainDiagnostics, TellTheFramesAndTheMap) {
 TEST(ChainDiagnostics, ALostCameraIsAnErrorThatSaysSinceWhen) {
   Chain chain("losing");
   const Diagnostics diagnostics(chain);
-  chain.set("tracking/lost_after_frames", 1);
+  chain.set("tracking/lost_after_s", 0.033);
   ASSERT_TRUE(chain.load());
   chain.process(toMessages(emptyRoom().frame(0).frame));
   CameraMessages covered = toMessages(emptyRoom().frame(1).frame);

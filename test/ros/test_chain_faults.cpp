@@ -69,7 +69,7 @@ TEST(Chain, DepthWithoutAnythingInItIsReportedAndDoesNoHarm) {
 
 TEST(Chain, WhileItIsLostTheSegmenterGetsNoViewAndNoPoseIsPublished) {
   Chain chain("lost");
-  chain.set("tracking/lost_after_frames", 2);
+  chain.set("tracking/lost_after_s", 0.067);
   ASSERT_TRUE(chain.load());
   std::mutex mutex;
   std::vector<ModelViewMsg::ConstPtr> views;

@@ -19,7 +19,7 @@ class ChainTransforms : public testing::Test {
   void load(const std::string& space, bool lossless, bool tf_while_lost) {
     chain = std::make_unique<Chain>(space);
     chain->set("lossless", lossless);
-    chain->set("tracking/lost_after_frames", 1);
+    chain->set("tracking/lost_after_s", 0.033);
     chain->set("odom_frame", std::string(kOdom));
     chain->set("map_frame", std::string(kMap));
     chain->set("tf_while_lost", tf_while_lost);

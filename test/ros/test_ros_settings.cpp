@@ -48,7 +48,7 @@ TEST(RosSettings, AreThoseOfTheListThatMayChange) {
             (std::set<std::string>{"pose/every_nth_frame", "pose/min_peak", "pose/min_person_score",
                                    "pose/min_person_joints", "pose/max_people"}));
   const auto fusion = described<FusionSettings>();
-  EXPECT_EQ(fusion.count("tracking/lost_after_frames"), 1U);
+  EXPECT_EQ(fusion.count("tracking/lost_after_s"), 1U);
   EXPECT_EQ(fusion.count("surfels_period_s"), 1U);
   FusionSettings settings;
   pf::FieldLister lister;

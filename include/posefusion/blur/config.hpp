@@ -10,7 +10,7 @@ struct BlurConfig {
   bool enabled = true;
   double threshold = 0.0;
   double relative_threshold = 0.2;
-  int history_frames = 30;
+  double history_s = 1.0;
   double max_gap_s = 0.2;
 };
 
@@ -22,10 +22,9 @@ inline void visitFields(BlurConfig& c, FieldVisitor& v) {
       "relative_threshold", c.relative_threshold, 0.0, 1.0,
       "adaptive: a frame is blurred if its fine detail, for its coarse detail, is below this part "
       "of the median of the recent frames");
-  v.integer(
-      "history_frames", c.history_frames, 1, 10000,
-      "adaptive: how many frames, dropped ones too, make the median; at least twice a burst of "
-      "blur");
+  v.number("history_s", c.history_s, 0.0, 1e4,
+           "adaptive: the frames of so long, dropped ones too, make the median; at least twice a "
+           "burst of blur (s)");
   v.number("max_gap_s", c.max_gap_s, 0.0, 1e3,
            "a blurred frame passes, to be located but not fused, when none has for so long (s)");
 }

@@ -36,12 +36,18 @@ class BlurGate {
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
+  struct Past {
+    std::int64_t stamp_ns;
+    double fine_detail;
+  };
+
   double threshold() const;
+  bool isOld(const Past& past, std::int64_t stamp_ns) const;
   /// Whether no frame has passed for so long that this one has to.
   bool isDue(std::int64_t stamp_ns) const;
 
   BlurConfig config_;
-  std::deque<double> recent_;        // fine detail of the last frames, dropped ones too
+  std::deque<Past> recent_;          // the last frames, dropped ones too
   std::int64_t passed_ns_ = kNever;  // stamp of the last frame that passed, or of the first one
 };
 

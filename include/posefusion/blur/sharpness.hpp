@@ -18,10 +18,11 @@ double scoreBlur(const cv::Mat& color);
 
 /// The score, and a measure that contrast does not change: blur takes fine detail only, less
 /// contrast or a dull scene takes coarse detail too. Fine detail is the mean square of the second
-/// difference at half the size, coarse detail that of the central difference at an eighth, both
-/// without the part of the sensor noise, which is estimated from the image (median version of
-/// J. Immerkaer, "Fast noise variance estimation", 1996). The smaller ratio of the two image axes
-/// counts, for a moving camera blurs along one. `color` is CV_8UC3 R G B.
+/// difference at about 320 pixels across (half the size of small images), coarse detail that of the
+/// central difference at a quarter of that, both without the part of the sensor noise, which is
+/// estimated from the image (median version of J. Immerkaer, "Fast noise variance estimation",
+/// 1996). The smaller ratio of the two image axes counts, for a moving camera blurs along one.
+/// `color` is CV_8UC3 R G B.
 Sharpness measureSharpness(const cv::Mat& color);
 
 }  // namespace pf

@@ -9,15 +9,20 @@ namespace pf {
 struct FrameConfig {
   double min_depth_m = 0.3;
   double max_depth_m = 5.0;
-  int shrink = 2;
+  int shrink = 0;
 };
 
 inline void visitFields(FrameConfig& c, FieldVisitor& v) {
   v.number("min_depth_m", c.min_depth_m, 0.01, 100.0, "nearer depth is not used");
   v.number("max_depth_m", c.max_depth_m, 0.1, 100.0, "farther depth is not used");
-  v.integer("shrink", c.shrink, 1, 8,
-            "tracking and map work on images shrunk by this factor; every pixel still counts, each "
-            "shrunk pixel is the mean of its block");
+  v.integer(
+      "shrink", c.shrink, 0, 8,
+      "tracking and map work on images shrunk by this factor; every pixel still counts, each "
+      "shrunk pixel is the mean of its block; 0: the factor by which a pixel is nearest to the "
+      "angle that one of a Kinect's has at 320x240");
 }
+
+/// The factor for a camera of this focal length (pixels): `shrink`, or what 0 stands for.
+int shrinkFor(const FrameConfig& config, double focal_px);
 
 }  // namespace pf

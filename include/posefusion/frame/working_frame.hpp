@@ -6,6 +6,7 @@
 
 #include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/frame.hpp"
+#include "posefusion/core/pace.hpp"
 #include "posefusion/frame/config.hpp"
 
 namespace pf {
@@ -32,6 +33,7 @@ struct WorkingFrame {
   int valid_pixels = 0;                    ///< of depth_m
   PinholeCamera full_camera;
   cv::Mat full_depth_m;  ///< CV_32FC1, full size, 0 = invalid
+  Pace pace;             ///< of the frames; assign() leaves it
 
   /// Prepares everything from a frame; `mask` (255 = person) may be empty. The range is that of
   /// `config`. Reuses memory.

@@ -16,7 +16,7 @@ struct LoopConfig {
   double near_m = 1.5;
   int candidates = 6;
   int enough_loops = 3;
-  int answer_lag_frames = 10;
+  double answer_lag_s = 0.333;
   double new_fragment_after_s = 4.0;
   bool refine_at_end = true;
 };
@@ -36,9 +36,9 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
             "most near keyframes that a keyframe is compared with");
   v.integer("enough_loops", c.enough_loops, 1, 1000,
             "a keyframe that has so many loops is compared with no more");
-  v.integer("answer_lag_frames", c.answer_lag_frames, 1, 1000,
-            "frames between a question to the loop closer and its answer, offline and in lossless "
-            "replay");
+  v.number("answer_lag_s", c.answer_lag_s, 0.0, 100.0,
+           "from a question to the loop closer to its answer, offline and in lossless replay (s, "
+           "counted in frames at the pace of the camera)");
   v.number("new_fragment_after_s", c.new_fragment_after_s, 0.0, 1e6,
            "a lost camera that sees something for so long begins a new piece of the map, until its "
            "place is known; 0: never");

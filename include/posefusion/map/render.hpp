@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// Surfels by their last support: within MapConfig::active_window_frames, or longer ago.
+/// Surfels by their last support: within MapConfig::active_window_s, or longer ago.
 enum class SurfelAge { active, inactive, all };
 
 /// Which surfels a view shows.

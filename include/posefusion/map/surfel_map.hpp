@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "posefusion/core/depth_sensor.hpp"
+#include "posefusion/core/pace.hpp"
 #include "posefusion/map/config.hpp"
 #include "posefusion/map/surfels.hpp"
 
@@ -49,7 +50,13 @@ class SurfelMap {
 
   /// Number of the last fused frame, from 0; -1 while the map is empty.
   int frame() const { return frame_; }
-  void advance() { ++frame_; }
+  /// `pace`: of the frames.
+  void advance(const Pace& pace = {}) {
+    ++frame_;
+    worth_ = pace.worth();
+    active_frames_ = pace.framesIn(config_.active_window_s);
+    unstable_frames_ = pace.framesIn(config_.max_unstable_age_s);
+  }
 
   /// In the order in which they were made; a block may be empty.
   const std::deque<SurfelBlock>& blocks() const { return blocks_; }
@@ -57,7 +64,7 @@ class SurfelMap {
   std::size_t stableCount() const;
 
   bool isActive(const SurfelArrays& s, std::size_t i) const {
-    return frame_ - s.seen[i] <= config_.active_window_frames;
+    return frame_ - s.seen[i] <= active_frames_;
   }
   bool isStable(const SurfelArrays& s, std::size_t i) const {
     return s.confidence[i] >= static_cast<float>(config_.stable_confidence);
@@ -68,8 +75,9 @@ class SurfelMap {
     // What contradicts a surfel must outweigh what supported it, so that some frames at a wrong
     // pose do not erase the room; but not more than a second of it, so that furniture can move.
     const float outweighed = std::clamp(s.confidence[i], 0.0F, kMostOutweighed);
-    if (static_cast<float>(s.violations[i] - config_.max_violations) > outweighed) return true;
-    return !isStable(s, i) && frame_ - s.seen[i] > config_.max_unstable_age_frames;
+    const float against = worth_ * static_cast<float>(s.violations[i]);
+    if (against - static_cast<float>(config_.max_violations) > outweighed) return true;
+    return !isStable(s, i) && frame_ - s.seen[i] > unstable_frames_;
   }
 
   /// Calls visit(surfels, i) for each surfel, block by block.
@@ -144,7 +152,7 @@ class SurfelMap {
  private:
   friend class Fuser;
 
-  static constexpr float kMostOutweighed = 24;  // frames
+  static constexpr float kMostOutweighed = 24;  // frames at 30 Hz
 
   /// A cube of a fragment, counted along each axis from its origin.
   struct Cell {
@@ -178,6 +186,10 @@ class SurfelMap {
   std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
   std::unordered_map<Cell, std::uint32_t, CellHash> index_;
   int frame_ = -1;
+  // At the pace of the last frame:
+  float worth_ = Pace().worth();
+  int active_frames_ = Pace().framesIn(config_.active_window_s);
+  int unstable_frames_ = Pace().framesIn(config_.max_unstable_age_s);
   std::size_t memory_ = 0;
   std::size_t refused_ = 0;
 };

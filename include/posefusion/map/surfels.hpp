@@ -17,7 +17,8 @@ struct SurfelArrays {
   std::vector<float> r, g, b;
   std::vector<float> radius;
   std::vector<float> weight;      ///< of the running means; a measurement at 1 m counts 1
-  std::vector<float> confidence;  ///< frames that supported it, less those asked of a newcomer
+  std::vector<float> confidence;  ///< frames at 30 Hz (a frame at 10 Hz counts 3) that supported
+                                  ///< it, less those asked of a newcomer
   std::vector<std::int32_t> created, seen;  ///< frame numbers: made, last supported
   std::vector<std::int32_t> violations;     ///< frames that contradict it, less those that support
 

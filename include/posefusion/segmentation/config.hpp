@@ -19,7 +19,7 @@ struct SegmentationConfig {
   double color_weight = 1.0;
   double model_weight = 2.5;
   double mask_weight = 1.0;
-  int carry_frames = 30;
+  double carry_s = 1.0;
   int margin_px = 3;
 };
 
@@ -37,8 +37,8 @@ inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
            "weight of the agreement with the rendered map");
   v.number("mask_weight", c.mask_weight, 0.0, 1e3,
            "weight of a detector's own mask, where it gives one");
-  v.integer("carry_frames", c.carry_frames, 0, 10000,
-            "people are carried forward so many frames after they were last detected");
+  v.number("carry_s", c.carry_s, 0.0, 1000.0,
+           "people are carried forward for so long after they were last detected");
   v.integer("margin_px", c.margin_px, 0, 50,
             "rim around the mask that is removed from the depth too, at 640 pixels width");
   v.atStart();

@@ -36,8 +36,8 @@ std::vector<bool> mayBeNew(const People& detected, const ShownPeople& shown,
 
 /// Finds a person's place in the scene from the joints, the detector's mask, the carried mask and
 /// the map. False: there is none, or it is a thing that the map holds, or the person was last
-/// detected too long ago (`carry_frames`). A detection that lies on the map does not end a carried
+/// detected too long ago (`carry_s`). A detection that lies on the map does not end a carried
 /// person who stands before it: it is forgotten.
-bool locatePerson(const Evidence& evidence, int carry_frames, TrackedPerson& tracked);
+bool locatePerson(const Evidence& evidence, double carry_s, TrackedPerson& tracked);
 
 }  // namespace pf

@@ -13,12 +13,12 @@ namespace pf {
 
 /// A person as carried from frame to frame.
 struct TrackedPerson {
-  Person person;           ///< joints in the newest frame
-  int id = 0;              ///< of the person, from 1 on; 0: not believed yet
-  bool fresh = false;      ///< detected in the newest frame
-  int detection = -1;      ///< if so: its index there
-  double unseen = 0.0;     ///< frames since the last detection, weighted by what the map says
-  bool in_map = false;     ///< the map holds the person by mistake: what it says there is not used
+  Person person;        ///< joints in the newest frame
+  int id = 0;           ///< of the person, from 1 on; 0: not believed yet
+  bool fresh = false;   ///< detected in the newest frame
+  int detection = -1;   ///< if so: its index there
+  double unseen = 0.0;  ///< frames at 30 Hz since the last detection, weighted by what the map says
+  bool in_map = false;  ///< the map holds the person by mistake: what it says there is not used
   float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
   std::vector<int> cells;  ///< the mask, as cells of the grid, moved to the newest frame
   ColorHistogram color;    ///< of the person; total() is 0 while nothing is known
@@ -39,8 +39,8 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
 /// Puts newly detected people in the place of the carried ones they continue; of the others those
 /// are added that `may_be_new` allows (one for each detection). A detection continues the
 /// carried person whose mask holds most of its joints, at least a third. Joints that the detector
-/// missed this time are kept from before.
+/// missed this time are kept from before. `worth`: of the frame, see Pace.
 void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,
-                     const SceneGrid& grid, std::vector<TrackedPerson>& people);
+                     const SceneGrid& grid, float worth, std::vector<TrackedPerson>& people);
 
 }  // namespace pf

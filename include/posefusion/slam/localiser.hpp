@@ -143,6 +143,7 @@ class Localiser {
                 const Location& location, std::int64_t stamp_ns);
 
   TrackingConfig config_;
+  Pace pace_;  ///< of the last frame
   TrackingState state_ = TrackingState::initializing;
   Previous previous_;
   PosePrior carried_;  ///< see Location

@@ -15,7 +15,8 @@ class Mapper;
 
 /// When answers are taken.
 enum class AnswerTime {
-  after_lag,  ///< so many frames after the question, waited for: the same on every machine
+  after_lag,  ///< so long after the question, counted in frames, waited for: the same on every
+              ///< machine
   when_ready  ///< live: nobody waits
 };
 
@@ -45,8 +46,8 @@ class LoopResponder {
 /// Its owner's thread alone may call it.
 class LoopExchange {
  public:
-  LoopExchange(int lag_frames, AnswerTime time, std::unique_ptr<LoopResponder> responder)
-      : lag_frames_(lag_frames), time_(time), responder_(std::move(responder)) {}
+  LoopExchange(double lag_s, AnswerTime time, std::unique_ptr<LoopResponder> responder)
+      : lag_s_(lag_s), time_(time), responder_(std::move(responder)) {}
 
   /// After each frame of the mapper. What the closer threw is thrown here; it goes on afterwards.
   void serve(Mapper& mapper);
@@ -73,10 +74,10 @@ class LoopExchange {
     bool for_place = false;
   };
 
-  bool isDue() const;
+  bool isDue(const Mapper& mapper) const;
   void takeOne(Mapper& mapper);
 
-  int lag_frames_;
+  double lag_s_;
   AnswerTime time_;
   std::unique_ptr<LoopResponder> responder_;
   std::deque<Asked> asked_;

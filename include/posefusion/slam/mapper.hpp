@@ -122,6 +122,9 @@ class Mapper {
 
   const SurfelMap& map() const;
 
+  /// Of the frames, as of the last one.
+  const Pace& pace() const;
+
   /// Tells where the map stands in the frame of those who use it (z up). Nothing in the map
   /// changes; its files, and later sessions in it, keep that frame.
   void place(const Eigen::Isometry3d& T_world_map);

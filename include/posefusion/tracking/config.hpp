@@ -15,7 +15,7 @@ struct TrackingConfig {
   double min_view_fraction = 0.10;
   double min_valid_fraction = 0.03;
   double min_inlier_fraction = 0.4;
-  int lost_after_frames = 10;
+  double lost_after_s = 0.333;
 };
 
 inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
@@ -34,8 +34,10 @@ inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
            "least part of the image that must have depth and model");
   v.number("min_inlier_fraction", c.min_inlier_fraction, 0.0, 1.0,
            "least part of those that must agree");
-  v.integer("lost_after_frames", c.lost_after_frames, 1, 1000,
-            "untrusted frames in a row until tracking counts as lost");
+  v.number(
+      "lost_after_s", c.lost_after_s, 0.0, 100.0,
+      "so long a row of untrusted frames, and tracking counts as lost (s, counted in frames at "
+      "the pace of the camera: of blurred ones only those that the gate lets through)");
 }
 
 }  // namespace pf

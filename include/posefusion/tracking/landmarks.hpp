@@ -8,6 +8,7 @@
 
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/depth_sensor.hpp"
+#include "posefusion/core/pace.hpp"
 #include "posefusion/frame/flow.hpp"
 
 namespace pf {
@@ -17,6 +18,7 @@ struct DepthPicture {
   const cv::Mat& depth_m;  ///< CV_32FC1, 0 = invalid
   const PinholeCamera& camera;
   DepthSensor sensor{};
+  Pace pace{};
 };
 
 /// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
@@ -28,7 +30,7 @@ struct Landmark {
   std::uint32_t id = 0;                          ///< of the corner, see SparseFlow
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< m, map frame: mean of what was seen
   double weight = 0;                             ///< 1 / variance of the depth, summed up
-  int misses = 0;                                ///< frames in which it was somewhere else
+  float misses = 0;                              ///< frames (at 30 Hz) that saw it elsewhere
 
   bool isBelieved() const;
 };
