@@ -5,10 +5,10 @@
 #include <random>
 #include <vector>
 
+#include "../src/tracking/place_errors.hpp"
 #include "mapper_scene.hpp"
 #include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/loop/verify.hpp"
-#include "../src/tracking/place_errors.hpp"
 
 namespace pf {
 namespace {
