@@ -132,6 +132,21 @@ TEST_F(MapperCalibrationTest, ASavedMapBringsItsCalibrationOrIsCorrectedByTheOne
   EXPECT_EQ(mended.depthVersion(), 1) << "its pictures are to be written anew";
 }
 
+TEST_F(MapperCalibrationTest, OfTheSensorsErrorOnlyWhatIsLeftIsReckonedWith) {
+  const auto told = [](double left_per_m) {
+    Mapper mapper(config());
+    DepthCalibration calibration = known();
+    calibration.left_per_m = left_per_m;
+    mapper.calibrate(calibration);
+    FrameStatus status;
+    for (int i = 0; i < kFrames; ++i) status = mapper.process(seen(i));
+    return status.tracking.covariance.trace();
+  };
+  const double unknown = told(0.0), much = told(0.1), little = told(0.0002);
+  EXPECT_LT(little, 0.8 * unknown);
+  EXPECT_EQ(much, unknown) << "never more than an uncalibrated camera has";
+}
+
 TEST_F(MapperCalibrationTest, SettingsSayWhatMayBeDone) {
   Config none = config();
   none.calibration.mode = "none";

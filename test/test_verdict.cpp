@@ -45,6 +45,24 @@ TEST_F(JudgeTest, WhatThePredictionAllowsIsBelieved) {
   EXPECT_EQ(judged(0.5), FrameOutcome::disagrees);
 }
 
+TEST_F(JudgeTest, AnAlignmentThatTellsLittleCannotLeaveItsPredictionFar) {
+  // Images that know half of what the prediction does draw it by a part of its own error.
+  EXPECT_EQ(judged(0.25), FrameOutcome::fused);
+  result_.covariance = (1.0 / 1.5) * prior_.covariance;
+  EXPECT_EQ(judged(0.25), FrameOutcome::disagrees);
+  EXPECT_EQ(judged(0.1), FrameOutcome::fused);
+  result_.covariance = prior_.covariance;
+  EXPECT_EQ(judged(0.1), FrameOutcome::disagrees) << "nothing but the prediction";
+}
+
+TEST_F(JudgeTest, APredictionThatLostItsWeightMayBeLeftFarther) {
+  result_.covariance = (1.0 / 1.5) * prior_.covariance;
+  ASSERT_EQ(judged(0.25), FrameOutcome::disagrees);
+  result_.prior_weight = 0.25;
+  result_.covariance = (1.0 / 0.75) * prior_.covariance;
+  EXPECT_EQ(judged(0.25), FrameOutcome::fused);
+}
+
 TEST_F(JudgeTest, WithoutCornersTheImagesHaveToProveAStep) {
   show(0.25);
   EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners say the same";

@@ -56,6 +56,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   const PosePrior prior = predict(location.motion, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
+  recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
   carry(location.motion);
   location.carried = carried_;
   Verdict verdict;
@@ -76,6 +77,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   } else {
     distrust(location, prior, stamp_ns);
   }
+  location.covariance = recent_.apart(location.tracking, frame.camera);
   remember(frame, flow, prior, location, stamp_ns);
   return location;
 }
@@ -197,6 +199,7 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;
     location.tracking.covariance = prior.covariance;
+    location.tracking.distance_m = 0;
   }
   previous_.T_map_camera = location.tracking.T_map_camera;
   previous_.covariance = location.tracking.covariance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the mapper knows of its depth camera: frames are corrected by it, and what is newly known
 // comes into the map as one correction.
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -35,11 +36,16 @@ StaticFrame Mapper::State::corrected(const StaticFrame& input) {
   return result;
 }
 
+/// Of its sensor's systematic error only what the calibration leaves is still to be reckoned with.
 void Mapper::State::use(std::optional<DepthCalibration> known) {
   calibration = std::move(known);
   const DepthField field = calibration ? calibration->field : DepthField();
   corrector = DepthCorrector(field);
   distorter = DepthCorrector(field.inverse());
+  sensor = depthSensorOf(config);
+  if (!calibration || calibration->left_per_m <= 0) return;
+  const auto left_1_m = static_cast<float>(calibration->left_per_m);
+  sensor.systematic_1_m = std::min(sensor.systematic_1_m, left_1_m);
 }
 
 void Mapper::State::take(const LoopAnswer& answer) {

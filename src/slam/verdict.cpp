@@ -12,6 +12,8 @@ namespace {
 // (squared; 6 degrees of freedom, 1 in 50000 by chance), or small anyway.
 constexpr double kMaxMahalanobis2 = 30.0;
 constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
+// A converged alignment may still be a step of this from its end.
+constexpr double kUnfinished_m = 0.004, kUnfinished_rad = 0.004;
 // Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
 // follow a person who was not masked. Not so for a step that no robot makes between two frames.
 constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
@@ -26,6 +28,17 @@ std::string stepText(const Eigen::Isometry3d& step, const char* what) {
   std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
                 angleOf(step) * 180.0 / M_PI, what);
   return text;
+}
+
+/// Covariance of how far an alignment comes to lie from the prior that is a part of it: prior minus
+/// posterior where the prior kept its weight. (Both added would count the prior's word twice.)
+Matrix6d covarianceOfDifference(const PosePrior& prior, const TrackingResult& r) {
+  const Matrix6d& P = prior.covariance;
+  const Matrix6d& C = r.covariance;
+  const Matrix6d of_prior = r.prior_weight * P.ldlt().solve(C).transpose();
+  const Matrix6d of_images = Matrix6d::Identity() - of_prior;
+  const Matrix6d sum = of_images * C + of_images * P * of_images.transpose();
+  return 0.5 * (sum + sum.transpose()) + independentCovariance(kUnfinished_m, kUnfinished_rad);
 }
 
 /// Enough agreement, of enough of the frame, with little seen through?
@@ -76,7 +89,7 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
   // Anything may have happened where nothing was measured: the images alone have to prove it.
   if (!motion.found && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
   const Vector6d error = logSe3(difference);
-  const Matrix6d covariance = prior.covariance + r.covariance;
+  const Matrix6d covariance = covarianceOfDifference(prior, r);
   if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
   if (!motion.found) return {FrameOutcome::jumped, text};
   const bool overruled =

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "place_errors.hpp"
 #include "posefusion/tracking/normal_equations.hpp"
 
 namespace pf {
@@ -37,6 +38,9 @@ constexpr double kMaxNormalNoise_rad = 0.12;
 // quarter of its weight: corners may follow a person who was not masked.
 constexpr double kPriorScale2 = 100.0;
 constexpr double kMinLeverArm_m = 0.3;
+// A prior follows from frames that saw the same places with the same errors: against those, one
+// frame's prior says no more than this part of what it says against noise.
+constexpr double kSameError_frames = 10.0;
 
 struct Prior {
   Eigen::Isometry3d T_frame_view;
@@ -49,6 +53,7 @@ struct Prior {
 /// What the images say of the pose, with noise taken out.
 struct ImageSystem {
   Matrix6d H, inverse;  ///< the inverse is zero in free directions
+  Matrix6d kept;        ///< takes the noise out of a gradient
   Vector6d g;
   int free_directions = 0;
 };
@@ -80,7 +85,8 @@ ImageSystem withoutNoise(const NormalEquations& e, double share, const Prior& pr
   system.H =
       share * inverse_S * V * values.cwiseProduct(kept).asDiagonal() * V.transpose() * inverse_S;
   system.inverse = S * V * inverse.asDiagonal() * V.transpose() * S;
-  system.g = share * inverse_S * keep * S * e.gradient();
+  system.kept = share * inverse_S * keep * S;
+  system.g = system.kept * e.gradient();
   return system;
 }
 
@@ -183,8 +189,8 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
   }
 }
 
-TrackingResult resultOf(const Alignment& a, double share, const Prior& prior,
-                        const Eigen::Isometry3d& T_map_view) {
+TrackingResult resultOf(const Alignment& a, const ModelPoints& model, const FrameLevel& frame,
+                        double share, const Prior& prior, const Eigen::Isometry3d& T_map_view) {
   const NormalEquations& e = a.equations;
   TrackingResult result;
   result.T_map_camera = orthonormalised(T_map_view * a.T_frame_view.inverse());
@@ -201,8 +207,15 @@ TrackingResult resultOf(const Alignment& a, double share, const Prior& prior,
   if (!a.solvable) return result;
   const PoseSystem system = combine(e, share, prior, a.T_frame_view);
   result.free_directions = system.free_directions;
+  result.prior_weight = system.prior_weight;
   result.converged = a.last_step < kConvergedStep;
   result.covariance = system.H.ldlt().solve(Matrix6d::Identity());
+  const PlaceErrors places = placeErrors(model, frame, a.T_frame_view, a.settings);
+  result.distance_m = places.distance_m;
+  const double held = system.prior_weight / kSameError_frames;
+  const ImageSystem images = withoutNoise(e, share, prior);
+  const Matrix6d pull = (images.H + held * prior.information).ldlt().solve(images.kept);
+  result.systematic = pull * places.gradient * pull.transpose();
   return result;
 }
 
@@ -229,7 +242,7 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
     share = static_cast<double>(1 << (2 * i)) / pixels_per_measurement;
     alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
-  return resultOf(a, share, prior, start.T_map_view);
+  return resultOf(a, model.level(0), frame.levels[0], share, prior, start.T_map_view);
 }
 
 }  // namespace pf

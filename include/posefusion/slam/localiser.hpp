@@ -7,6 +7,7 @@
 
 #include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/frame/flow.hpp"
+#include "posefusion/slam/recent_motion.hpp"
 #include "posefusion/slam/status.hpp"
 #include "posefusion/slam/verdict.hpp"
 #include "posefusion/tracking/rotation.hpp"
@@ -40,6 +41,9 @@ struct Location {
   int fragment = kFirstFragment;
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< in the fragment
   TrackingResult tracking;
+  /// Of the pose, against those of the last second: what they have in common, as far as they saw
+  /// the same, shows in no motion between them. Alignments are weighted by tracking.covariance.
+  Matrix6d covariance = Matrix6d::Zero();
   SparseMotion motion;
   /// Where the camera would be by its corners' motion alone since the last fused frame; measured
   /// where many of them told of every step. Of a return, it tells what the loss has torn apart.
@@ -150,6 +154,7 @@ class Localiser {
   Landmarks landmarks_;
   MapPose located_;  ///< see lastPose()
   Eigen::Isometry3d T_reckoned_ = Eigen::Isometry3d::Identity();
+  RecentMotion recent_;
   Brightness brightness_;
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that may be fused
   std::int64_t seen_ns_ = 0;     ///< of the last that was located by its images, blurred ones too

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "posefusion/core/camera.hpp"
+#include "posefusion/core/se3.hpp"
+#include "posefusion/tracking/result.hpp"
+
+namespace pf {
+
+/// How the camera moved of late: the sum of its steps, in which older ones fade, over about a
+/// second.
+class RecentMotion {
+ public:
+  /// From the frame before to this one.
+  void add(const Eigen::Isometry3d& T_before_after, double elapsed_s);
+
+  /// Part of the view that is new by that, where it shows what is so far away; more than 1 where
+  /// whole views went by.
+  double newView(const PinholeCamera& camera, double distance_m) const;
+
+  /// Covariance of an aligned pose against poses of the last second, half of it with either: what
+  /// poses that see the same have in common is left out. One that was not aligned (distance 0)
+  /// keeps its own.
+  Matrix6d apart(const TrackingResult& tracking, const PinholeCamera& camera) const;
+
+ private:
+  Vector6d twist_ = Vector6d::Zero();  ///< m, rad, in the camera's frame
+};
+
+}  // namespace pf
