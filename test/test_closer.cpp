@@ -8,6 +8,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/loop/worker.hpp"
 #include "simulated_sequence.hpp"
 
 namespace pf {
@@ -22,7 +23,9 @@ const SimulatedSequence& room() {
 
 WorkingFrame frameOf(int view) {
   WorkingFrame frame;
-  frame.assign(room().frame(view * kStep).frame, cv::Mat(), FrameConfig{});
+  FrameConfig config;
+  config.shrink = 2;  // steps are a large part of the view: wanted coarse
+  frame.assign(room().frame(view * kStep).frame, cv::Mat(), config);
   return frame;
 }
 
@@ -119,6 +122,29 @@ TEST(LoopCloser, ComingBackGivesTrueConstraints) {
   EXPECT_EQ(c.accepted + c.allRefused(), c.compared);
   EXPECT_GT(c.local, 0U);
   EXPECT_LE(c.local, c.accepted);
+}
+
+TEST(LoopWorker, CountsGoOnWhereKeyframesAreToldAnew) {
+  LoopWorker worker(quick(), TrackingConfig{}, DepthSensor{});
+  std::vector<KeyframeView> views;
+  LoopAnswer last;
+  const auto add = [&](int id) {
+    views.push_back(keyframeView(frameOf(0), id, {0, poseOf(0)}, true));
+    LoopQuestion question;
+    question.keyframe = views.back();
+    return worker.answer(question);
+  };
+  for (int i = 0; i < 5; ++i) last = add(i);
+  ASSERT_GT(last.counts.accepted, 0U);
+  LoopQuestion anew;  // the camera was learned, say
+  anew.known = views;
+  const LoopCounts after = worker.answer(anew).counts;
+  EXPECT_EQ(after.accepted, last.counts.accepted);
+  EXPECT_EQ(after.compared, last.counts.compared);
+  EXPECT_EQ(after.keyframes, views.size());
+  EXPECT_GT(add(5).counts.compared, last.counts.compared);
+  views.clear();
+  EXPECT_EQ(add(0).counts.compared, 0U) << "a new map";
 }
 
 TEST(LoopCloser, FarByItsPoseAPlaceIsFoundByItsPicture) {

@@ -39,6 +39,15 @@ Features featuresIn(const KeyframeView& view) {
 
 }  // namespace
 
+void LoopCounts::addPairs(const LoopCounts& before) {
+  compared += before.compared;
+  accepted += before.accepted;
+  local += before.local;
+  one_way += before.one_way;
+  turned += before.turned;
+  for (std::size_t i = 0; i < refused.size(); ++i) refused[i] += before.refused[i];
+}
+
 std::size_t LoopCounts::allRefused() const {
   return std::accumulate(refused.begin(), refused.end(), one_way + turned);
 }

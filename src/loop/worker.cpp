@@ -74,6 +74,14 @@ void LoopWorker::begin() {
   learner_ = FieldLearner();
 }
 
+void LoopWorker::beginMap() {
+  begin();
+  LoopCounts searches;
+  searches.searched = counts_.searched;
+  searches.found = counts_.found;
+  counts_ = searches;
+}
+
 void LoopWorker::addKeyframe(const KeyframeView& view) {
   closer_.addKeyframe(view);
   if (!calibration_.learns()) return;
@@ -94,6 +102,7 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
   if (question.known) {
+    counts_.addPairs(closer_.counts());
     begin();
     for (const KeyframeView& view : *question.known) addKeyframe(view);
   }
@@ -103,7 +112,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   }
   answer.remeasured = closer_.remeasure(question.remeasured);
   if (question.keyframe) {
-    if (question.keyframe->id == 0) begin();  // a new map
+    if (question.keyframe->id == 0) beginMap();
     Stopwatch watch;
     addKeyframe(*question.keyframe);
     answer.loops = closer_.findLoops();
@@ -117,6 +126,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
     counts_.found += answer.place ? 1 : 0;
   }
   answer.counts = closer_.counts();
+  answer.counts.addPairs(counts_);
   answer.counts.searched = counts_.searched;
   answer.counts.found = counts_.found;
   return answer;

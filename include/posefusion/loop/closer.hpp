@@ -36,6 +36,9 @@ struct LoopCounts {
   std::size_t found = 0;     ///< of them
 
   std::size_t allRefused() const;
+
+  /// Adds what was compared before, and how that ended.
+  void addPairs(const LoopCounts& before);
 };
 
 /// Finds pairs of keyframes that see the same place. Candidates come from the ferns, from nearness

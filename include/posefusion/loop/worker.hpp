@@ -60,10 +60,9 @@ struct LoopAnswer {
 };
 
 /// The loop closer's work, question by question: loops of keyframes, what the depth camera is off
-/// by, and a lost camera's place by
-/// drawing the map around the last pose before the loss (searchPlaces) and verifying the best
-/// candidates. The answers depend on the questions and their order alone. Not thread safe; may work
-/// beside the mapper.
+/// by, and a lost camera's place by drawing the map around the last pose before the loss
+/// (searchPlaces) and verifying the best candidates. The answers depend on the questions and their
+/// order alone. Not thread safe; may work beside the mapper.
 class LoopWorker {
  public:
   LoopWorker(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor,
@@ -80,6 +79,7 @@ class LoopWorker {
 
   /// The keyframes, from the first on.
   void begin();
+  void beginMap();
   void addKeyframe(const KeyframeView& view);
   void learn(const LoopQuestion& question, LoopAnswer& answer);
   std::optional<PlaceVerdict> findPlace(const PlaceQuestion& question);
@@ -96,7 +96,7 @@ class LoopWorker {
   LoopCloser closer_;
   FieldLearner learner_;
   PlaceVerifier verifier_;
-  LoopCounts counts_;
+  LoopCounts counts_;  ///< of lost cameras; of pairs, before the keyframes were told anew
   // Of the map that was last searched in.
   std::weak_ptr<const SurfelMap> map_;  ///< that those fragments are of
   std::map<int, Searched> searched_;
