@@ -15,10 +15,14 @@ namespace {
 
 // One chance in a thousand that luck alone does as well.
 constexpr double kSignificant = 3.1;
+// One in twenty: enough where the field found says the same by itself.
+constexpr double kLikely = 1.64;
 // The covariance knows of what differs between views alone: fields of simulated cameras were off by
 // two to three and a half times of it. Of many pairs the tiniest gain is no luck: what is taken out
 // must be clearly more than what may be put in, or a good camera would be made no better, or worse.
 constexpr double kSigmas = 3.0;
+constexpr char kNoBetter[] =
+    "pairs that were kept out do not agree better by more than luck explains";
 // Fewer judging pairs give no standard error worth the name.
 constexpr std::size_t kFewestJudges = 10;
 
@@ -65,9 +69,8 @@ double sigmaOf(const DepthField& field, const Eigen::MatrixXd& covariance) {
 }
 
 std::string doubtOf(const FieldEstimate& estimate) {
-  const std::string doubt = estimate.doubtOfStep();
-  if (!doubt.empty()) return doubt;
-  if (estimate.field.rms() > kSigmas * estimate.sigma_per_m) return {};
+  if (estimate.kept_out.significance <= kSignificant) return kNoBetter;
+  if (estimate.standsOut()) return {};
   std::ostringstream text;
   text << "the error found, " << estimate.field.rms() << " 1/m, is less than " << kSigmas
        << " times what it is known to, " << estimate.sigma_per_m;
@@ -76,10 +79,12 @@ std::string doubtOf(const FieldEstimate& estimate) {
 
 }  // namespace
 
+bool FieldEstimate::standsOut() const { return field.rms() > left_per_m(); }
+
 std::string FieldEstimate::doubtOfStep() const {
   if (kept_out.pairs == 0) return reason;
-  if (kept_out.significance > kSignificant) return {};
-  return "pairs that were kept out do not agree better by more than luck explains";
+  if (kept_out.significance > (standsOut() ? kLikely : kSignificant)) return {};
+  return kNoBetter;
 }
 
 DepthCalibration FieldEstimate::asCalibration() const {

@@ -45,8 +45,12 @@ struct FieldEstimate {
   bool worth_taking = false;  ///< by a camera of which nothing was known
   std::string reason;         ///< why it is not worth taking, or why there is no estimate
 
+  /// More than three times what it is known to.
+  bool standsOut() const;
+
   /// Why it is not worth taking as a step of a field that is in use: that the camera is off is no
-  /// question any more, only whether pairs that were kept out agree better. Empty: it is.
+  /// question any more, only whether pairs that were kept out agree better; a field that stands out
+  /// needs less of that. Empty: it is.
   std::string doubtOfStep() const;
 
   /// As one step of what is known of a camera, without its name and image.
