@@ -15,7 +15,7 @@ namespace {
 
 // One chance in a thousand that luck alone does as well.
 constexpr double kSignificant = 3.1;
-// One in twenty: enough where the field found says the same by itself.
+// One in twenty: enough where the field found says the same by itself, and no more will be known.
 constexpr double kLikely = 1.64;
 // The covariance knows of what differs between views alone: fields of simulated cameras were off by
 // two to three and a half times of it. Of many pairs the tiniest gain is no luck: what is taken out
@@ -81,9 +81,9 @@ std::string doubtOf(const FieldEstimate& estimate) {
 
 bool FieldEstimate::standsOut() const { return field.rms() > left_per_m(); }
 
-std::string FieldEstimate::doubtOfStep() const {
+std::string FieldEstimate::doubtOfStep(bool is_last) const {
   if (kept_out.pairs == 0) return reason;
-  if (kept_out.significance > (standsOut() ? kLikely : kSignificant)) return {};
+  if (kept_out.significance > (is_last && standsOut() ? kLikely : kSignificant)) return {};
   return kNoBetter;
 }
 

@@ -94,7 +94,8 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   const auto estimate =
       question.calibrates ? std::optional<FieldEstimate>(learner_.estimate()) : learner_.learn();
   if (!estimate) return;
-  answer.calibration_doubt = question.is_corrected ? estimate->doubtOfStep() : estimate->reason;
+  answer.calibration_doubt =
+      question.is_corrected ? estimate->doubtOfStep(false) : estimate->reason;
   if (!answer.calibration_doubt.empty()) return;
   answer.calibration = estimate->asCalibration();
 }

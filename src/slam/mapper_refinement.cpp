@@ -46,7 +46,7 @@ bool Mapper::State::learnFromAll() {
     seen.back().fragment = pose.fragment;
   }
   const FieldEstimate estimate = estimateField(seen);
-  if (!(calibration ? estimate.doubtOfStep() : estimate.reason).empty()) return false;
+  if (!(calibration ? estimate.doubtOfStep(true) : estimate.reason).empty()) return false;
   improve(estimate.asCalibration());
   return true;
 }

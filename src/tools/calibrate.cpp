@@ -87,7 +87,7 @@ DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate
     return calibration;
   }
   // Depth that was corrected already tells what that correction left.
-  const std::string doubt = estimate.doubtOfStep();
+  const std::string doubt = estimate.doubtOfStep(true);
   if (doubt.empty()) {
     calibration.field = seen.corrected_by->field.then(estimate.field).centred();
     calibration.before_mm = seen.corrected_by->before_mm;

@@ -49,9 +49,9 @@ struct FieldEstimate {
   bool standsOut() const;
 
   /// Why it is not worth taking as a step of a field that is in use: that the camera is off is no
-  /// question any more, only whether pairs that were kept out agree better; a field that stands out
-  /// needs less of that. Empty: it is.
-  std::string doubtOfStep() const;
+  /// question any more, only whether pairs that were kept out agree better. `is_last`: no more
+  /// keyframes will come; then a field that stands out needs less of that. Empty: it is.
+  std::string doubtOfStep(bool is_last) const;
 
   /// As one step of what is known of a camera, without its name and image.
   DepthCalibration asCalibration() const;
