@@ -81,7 +81,8 @@ Sharpness measureSharpness(const cv::Mat& color) {
   result.laplacian_variance = varianceOfLaplacian(grey);
   result.dull = true;
   const int shrink = std::max(kLeastShrink, static_cast<int>(std::lround(grey.cols / kFineWidth)));
-  // The mean of 2x2 pixels has a quarter of the noise, the second difference six times that.
+  // The mean of a block has the noise of a pixel over their number, the second difference six times
+  // that.
   const double noise = noiseVariance(grey) / (shrink * shrink);
   const double fine_noise = 6.0 * noise;
   const cv::Mat small = shrunk(grey, shrink), smallest = shrunk(shrunk(small, 2), 2);

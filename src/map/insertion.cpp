@@ -11,7 +11,7 @@ namespace pf {
 namespace {
 
 // Support (frames at 30 Hz) that what stands before a known surface begins below nothing with:
-// somebody whom the detector misses for a second shall not become part of the room.
+// a person whom the detector misses for a second must not become part of the room.
 constexpr float kNewcomer = 30.0F;
 
 bool isWanted(const WorkingFrame& frame, const Evidence& evidence, int u, int v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the mapper shows its map: to tracking, to the segmenter, and to who asks.
+// How the mapper shows its map: to tracking, to the segmenter, and on request.
 #include <algorithm>
 
 #include "mapper_state.hpp"
@@ -13,8 +13,8 @@ constexpr double kSameViewShift_m = 0.15, kSameViewTurn_rad = 0.12;
 // The view is drawn as far as frames are tracked, and a match beyond that may still be near enough.
 constexpr float kMatchSigmas = 5.0F;
 
-/// Not less far than the segmenter looks for people, whatever the range of the map: who stands
-/// before a far wall is told by it.
+/// Not less far than the segmenter looks for people, whatever the range of the map: it finds a
+/// person before a far wall by that wall.
 RenderOptions viewOptions(const DepthSensor& sensor, int fragment) {
   const double range_m = sensor.max_depth_m;
   RenderOptions options;

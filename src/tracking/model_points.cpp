@@ -10,7 +10,7 @@ namespace pf {
 namespace {
 
 // A surfel that so many frames (at 30 Hz) have supported counts fully. Until then it may belong to
-// somebody who moves and was not masked. It never counts for nothing: a turn shows little but new
+// a person who moves and was not masked. It never counts for nothing: a turn shows little but new
 // surfels.
 constexpr float kFullSupport = 30.0F;
 constexpr float kLeastWeight = 0.2F;

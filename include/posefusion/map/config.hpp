@@ -26,7 +26,7 @@ inline void visitFields(MapConfig& c, FieldVisitor& v) {
            "the running mean forgets beyond this weight (measurements at 1 m count 1)");
   v.integer("max_violations", c.max_violations, 1, 200,
             "a surfel is removed when more frames (at 30 Hz) contradict it than this and than have "
-            "supported it (of whom 24 count at most)");
+            "supported it (24 of these count at most)");
   v.number("max_unstable_age_s", c.max_unstable_age_s, 0.0, 1e6,
            "an unstable surfel not supported for so long, while frames are fused, is removed");
   v.number("active_window_s", c.active_window_s, 0.0, 1e9,
