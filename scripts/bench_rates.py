@@ -17,7 +17,7 @@ LISTS = ("associations.txt", "rgb.txt", "depth.txt")
 
 
 def thinned(source, folder, every):
-    """A recording of every so manieth frame of another one, at links to its files."""
+    """A recording of every n-th frame of another one, at links to its files."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     for path in source.resolve().iterdir():
@@ -55,10 +55,10 @@ class Rates(Runs):
 
     def rates_run(self, name, sequence, usual=None):
         """Prints the errors of a run; against those of `usual`, where it is given. Returns them."""
-        folder, summary = self.run(f"{sequence.name}_run", sequence, "--detector", "recorded")
-        live = self.evaluate(sequence, folder)["live"]
+        _, summary = self.run(f"{sequence.name}_run", sequence, "--detector", "recorded")
+        live = summary["live"]
         states = summary["frames"]["by_state"]
-        found = {"ATE, final": summary["ate_rmse_m"], "ATE, live": live["ate_m"]["rmse"]}
+        found = {"ATE, final": summary["ate_rmse_m"], "ATE, live": live["ate_rmse_m"]}
         for what, value in found.items():
             self.row(f"loop_room {name}: {what}", value, "m", usual and round(MOST * usual[what], 4))
         found["lost"] = 100 * states.get("lost", 0) / max(1, sum(states.values()))

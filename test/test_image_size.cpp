@@ -54,8 +54,8 @@ TEST(ImageSize, WhatTheAlignmentSaysIsTheSame) {
   for (const int width : {320, 1280}) {
     const Seen seen = lastAt(width, false);
     for (const int first : {0, 3}) {
-      const double ratio = sigmaOf(seen.status.tracking.covariance, first) /
-                           sigmaOf(usual.status.tracking.covariance, first);
+      const double ratio =
+          sigmaOf(seen.status.covariance, first) / sigmaOf(usual.status.covariance, first);
       EXPECT_NEAR(std::log(ratio), 0.0, std::log(1.35)) << width << " " << first;
     }
     EXPECT_EQ(seen.status.tracking.free_directions, usual.status.tracking.free_directions) << width;

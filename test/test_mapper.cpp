@@ -39,7 +39,7 @@ TEST_F(MapperTest, CovarianceIsPositiveAndSmallInARoom) {
   Mapper mapper(config());
   mapper.process({room().frame(0).frame, {}, {}});
   const FrameStatus status = mapper.process({room().frame(1).frame, {}, {}});
-  const Matrix6d& C = status.tracking.covariance;
+  const Matrix6d& C = status.covariance;
   EXPECT_LT((C - C.transpose()).norm(), 1e-9);
   for (int i = 0; i < 6; ++i) {
     EXPECT_GT(C(i, i), 0);
@@ -60,7 +60,7 @@ TEST_F(MapperTest, TheSensorOfTheSettingsIsThatOfMapTrackingAndViews) {
     }
     EXPECT_EQ(mapper.map().sensor().kind, depthSensorOf(stereo).kind);
     EXPECT_EQ(status.outcome, FrameOutcome::fused);
-    return status.tracking.covariance.trace();
+    return status.covariance.trace();
   };
   const double kinect = tracked("auto");
   EXPECT_EQ(tracked("structured_light"), kinect);

@@ -140,7 +140,7 @@ TEST_F(MapperCalibrationTest, OfTheSensorsErrorOnlyWhatIsLeftIsReckonedWith) {
     mapper.calibrate(calibration);
     FrameStatus status;
     for (int i = 0; i < kFrames; ++i) status = mapper.process(seen(i));
-    return status.tracking.covariance.trace();
+    return status.covariance.trace();
   };
   const double unknown = told(0.0), much = told(0.1), little = told(0.0002);
   EXPECT_LT(little, 0.8 * unknown);

@@ -39,6 +39,18 @@ void expectTheSameAtAnyRate(const std::function<double(double)>& seconds) {
   }
 }
 
+/// How long (s) a scene is fused, after `before_s` of another one, until the map is as wanted.
+double secondsOfChange(double rate_hz, WorkingFrame before, double before_s, WorkingFrame after,
+                       const std::function<bool(const SurfelMap&)>& done) {
+  SurfelMap map{MapConfig{}};
+  before.pace = after.pace = paceOf(rate_hz);
+  fuseOften(before.pace.framesIn(before_s), before, map);
+  return secondsUntil(rate_hz, [&] {
+    fuseOften(1, after, map);
+    return done(map);
+  });
+}
+
 TEST(Pace, CountsThirtyFramesInASecondAtTheUsualRate) {
   EXPECT_EQ(Pace().framesIn(1.0), 30);
   EXPECT_EQ(Pace().worth(), 1.0F);
@@ -95,27 +107,15 @@ TEST(PaceOfTheMap, ASurfelIsStableAfterTheSameTime) {
 
 TEST(PaceOfTheMap, WhoComesBeforeAKnownWallIsStableAfterTheSameTime) {
   expectTheSameAtAnyRate([](double rate_hz) {
-    SurfelMap map{MapConfig{}};
-    WorkingFrame wall = scene(3.0), board = scene(3.0, 1.5);
-    wall.pace = board.pace = paceOf(rate_hz);
-    fuseOften(wall.pace.framesIn(1.0), wall, map);
-    return secondsUntil(rate_hz, [&] {
-      fuseOften(1, board, map);
-      return stableNear(map, 1.5) > 0;
-    });
+    return secondsOfChange(rate_hz, scene(3.0), 1.0, scene(3.0, 1.5),
+                           [](const SurfelMap& map) { return stableNear(map, 1.5) > 0; });
   });
 }
 
 TEST(PaceOfTheMap, FurnitureThatWasMovedGoesAfterTheSameTime) {
   expectTheSameAtAnyRate([](double rate_hz) {
-    SurfelMap map{MapConfig{}};
-    WorkingFrame wall = scene(3.0), board = scene(3.0, 1.5);
-    wall.pace = board.pace = paceOf(rate_hz);
-    fuseOften(wall.pace.framesIn(2.0), board, map);
-    return secondsUntil(rate_hz, [&] {
-      fuseOften(1, wall, map);
-      return countNear(map, 1.5) < 100;
-    });
+    return secondsOfChange(rate_hz, scene(3.0, 1.5), 2.0, scene(3.0),
+                           [](const SurfelMap& map) { return countNear(map, 1.5) < 100; });
   });
 }
 

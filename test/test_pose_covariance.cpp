@@ -57,8 +57,9 @@ class PoseCovarianceTest : public MapperTest {
   }
 
   TrackingResult aligned(double systematic_1_m) const {
-    return track(seen(DepthField(), sensorWith(systematic_1_m)), model_,
-                 freeStart(truth_.T_map_camera), TrackingConfig{});
+    TrackingStart start = freeStart(truth_.T_map_camera);
+    start.with_systematic = true;
+    return track(seen(DepthField(), sensorWith(systematic_1_m)), model_, start, TrackingConfig{});
   }
 
   TrueFrame truth_;
@@ -105,8 +106,8 @@ TEST_F(PoseCovarianceTest, WhatIsToldOfAPoseAtRestIsLessThanInATurn) {
     in_motion = moves.process({room().frame(i).frame, {}, {}});
   }
   ASSERT_EQ(at_rest.outcome, FrameOutcome::fused);
-  EXPECT_LT(at_rest.tracking.covariance.trace(), 0.7 * in_motion.tracking.covariance.trace());
-  EXPECT_GT(at_rest.tracking.covariance.diagonal().minCoeff(), 0.0);
+  EXPECT_LT(at_rest.covariance.trace(), 0.7 * in_motion.covariance.trace());
+  EXPECT_GT(at_rest.covariance.diagonal().minCoeff(), 0.0);
 }
 
 }  // namespace

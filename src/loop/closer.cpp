@@ -39,12 +39,14 @@ Features featuresIn(const KeyframeView& view) {
 
 }  // namespace
 
-void LoopCounts::addPairs(const LoopCounts& before) {
+void LoopCounts::addWork(const LoopCounts& before) {
   compared += before.compared;
   accepted += before.accepted;
   local += before.local;
   one_way += before.one_way;
   turned += before.turned;
+  searched += before.searched;
+  found += before.found;
   for (std::size_t i = 0; i < refused.size(); ++i) refused[i] += before.refused[i];
 }
 

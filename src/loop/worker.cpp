@@ -103,7 +103,7 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
 LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
   LoopAnswer answer;
   if (question.known) {
-    counts_.addPairs(closer_.counts());
+    counts_.addWork(closer_.counts());
     begin();
     for (const KeyframeView& view : *question.known) addKeyframe(view);
   }
@@ -127,9 +127,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
     counts_.found += answer.place ? 1 : 0;
   }
   answer.counts = closer_.counts();
-  answer.counts.addPairs(counts_);
-  answer.counts.searched = counts_.searched;
-  answer.counts.found = counts_.found;
+  answer.counts.addWork(counts_);
   return answer;
 }
 

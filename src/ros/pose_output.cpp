@@ -112,7 +112,7 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
                       has_odometry ? *T_map_odom_ : T_map_base);
     if (!unsent.empty()) note = unsent;
   }
-  sendOdometry(image.stamp, links, T_map_base, status.tracking.covariance);
+  sendOdometry(image.stamp, links, T_map_base, status.covariance);
   geometry_msgs::PoseStamped pose;
   pose.header.stamp = image.stamp;
   pose.header.frame_id = settings_.map_frame;

@@ -116,9 +116,9 @@ TrackingStatusMsg toMessage(const pf::FrameStatus& status, const std_msgs::Heade
   message.located = static_cast<unsigned char>(status.located);
   message.reason = reasonOf(status);
   message.pose = toPose(T_map_camera);
-  const pf::TrackingResult& tracking = status.tracking;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance.data()) =
-      tracking.covariance;
+      status.covariance;
+  const pf::TrackingResult& tracking = status.tracking;
   message.candidates = static_cast<std::uint32_t>(std::max(0, tracking.candidates));
   message.inliers = static_cast<std::uint32_t>(std::max(0, tracking.inliers));
   message.geometric_rmse_m = tracking.geometric_rmse_m;

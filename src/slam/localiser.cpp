@@ -125,7 +125,7 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
   }
   const auto attempt = [&](const Eigen::Isometry3d& guess, bool firm) {
     const RenderedModel model = render(guess);
-    const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm};
+    const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
     const TrackingResult result = track(frame, model.points, start, config_);
     const Verdict found = judge(frame, result, prior, motion, config_);
     const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;

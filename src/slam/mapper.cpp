@@ -138,7 +138,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   status.detail = location.detail;
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
-  status.tracking.covariance = location.covariance;
+  status.covariance = location.covariance;
   status.motion = location.motion;
   status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;

@@ -11,14 +11,18 @@ LoopConstraint asLoop(const PoseConstraint& c) { return {c.from, c.to, c.T_from_
 
 }  // namespace
 
+/// The views of the keyframes where the graph has them now.
+void Mapper::State::placeViews() {
+  const std::vector<MapPose> poses = back_end.keyframePoses();
+  for (KeyframeView& view : views) view.pose = poses[static_cast<std::size_t>(view.id)];
+}
+
 /// Aligns all pairs; the graph, the map and all poses follow.
 void Mapper::State::alignPairs(Refinement& done) {
   const std::vector<MapPose> before = back_end.keyframePoses();
+  placeViews();
   std::vector<const KeyframeView*> seen;
-  for (KeyframeView& view : views) {
-    view.pose = before[static_cast<std::size_t>(view.id)];
-    seen.push_back(&view);
-  }
+  for (const KeyframeView& view : views) seen.push_back(&view);
   const std::vector<PoseConstraint>& known = back_end.graph().constraints();
   const std::vector<PoseConstraint> pairs = densePairs(views, known, sensor);
   const auto measure = [&](const std::vector<PoseConstraint>& all) {
@@ -37,14 +41,9 @@ void Mapper::State::alignPairs(Refinement& done) {
 /// What all keyframes together tell of the depth camera; whether it was worth taking.
 bool Mapper::State::learnFromAll() {
   if (!config.calibration.learns()) return false;
-  const std::vector<MapPose> poses = back_end.keyframePoses();
+  placeViews();
   std::vector<CalibrationView> seen;
-  for (const KeyframeView& view : views) {
-    seen.push_back(calibrationView(view, sensor));
-    const MapPose& pose = poses[static_cast<std::size_t>(view.id)];
-    seen.back().T_map_camera = pose.T_map_camera;
-    seen.back().fragment = pose.fragment;
-  }
+  for (const KeyframeView& view : views) seen.push_back(calibrationView(view, sensor));
   const FieldEstimate estimate = estimateField(seen);
   if (!(calibration ? estimate.doubtOfStep(true) : estimate.reason).empty()) return false;
   improve(estimate.asCalibration());

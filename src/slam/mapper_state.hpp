@@ -117,6 +117,7 @@ struct Mapper::State {
   void use(std::optional<DepthCalibration> known);
   void take(const LoopAnswer& answer);
   void improve(const DepthCalibration& step);
+  void placeViews();
   void alignPairs(Refinement& done);
   bool learnFromAll();
   void correctDepthBy(const DepthField& step, double left_per_m);

@@ -37,7 +37,7 @@ void StatusWriter::add(const ProcessedFrame& frame) {
   row.outcome = name(status.outcome);
   row.reason = reasonOf(status);
   row.T_map_camera = status.T_map_camera;
-  if (isGood(status.outcome)) row.covariance = status.tracking.covariance;
+  if (isGood(status.outcome)) row.covariance = status.covariance;
   rows_.push_back(std::move(row));
 }
 

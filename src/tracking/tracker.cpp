@@ -109,10 +109,9 @@ struct PoseSystem {
   int free_directions = 0;
 };
 
-PoseSystem combine(const NormalEquations& e, double share, const Prior& prior,
+PoseSystem combine(const ImageSystem& images, const Prior& prior,
                    const Eigen::Isometry3d& T_frame_view) {
   const Vector6d error = logSe3(T_frame_view * prior.T_frame_view.inverse());
-  const ImageSystem images = withoutNoise(e, share, prior);
   PoseSystem system;
   system.free_directions = images.free_directions;
   system.prior_weight = weightOf(prior, images, error);
@@ -161,7 +160,8 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
   for (int i = 1; i < config.max_iterations; ++i) {
     a.solvable = a.equations.inliers >= 6;
     if (!a.solvable) return;
-    const PoseSystem system = combine(a.equations, share, prior, a.T_frame_view);
+    const PoseSystem system =
+        combine(withoutNoise(a.equations, share, prior), prior, a.T_frame_view);
     Vector6d step = system.H.ldlt().solve(-system.g);
     a.solvable = step.allFinite() && step.norm() < 1.0;
     if (!a.solvable) return;
@@ -189,8 +189,17 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
   }
 }
 
-TrackingResult resultOf(const Alignment& a, const ModelPoints& model, const FrameLevel& frame,
-                        double share, const Prior& prior, const Eigen::Isometry3d& T_map_view) {
+/// What the sensor's errors that do not average out add to the covariance.
+void addSystematic(const PlaceErrors& places, const ImageSystem& images, const Prior& prior,
+                   TrackingResult& result) {
+  const double held = result.prior_weight / kSameError_frames;
+  const Matrix6d pull = (images.H + held * prior.information).ldlt().solve(images.kept);
+  result.systematic = pull * places.gradient * pull.transpose();
+  result.distance_m = places.distance_m;
+}
+
+TrackingResult resultOf(const Alignment& a, const ImageSystem& images, const Prior& prior,
+                        const Eigen::Isometry3d& T_map_view) {
   const NormalEquations& e = a.equations;
   TrackingResult result;
   result.T_map_camera = orthonormalised(T_map_view * a.T_frame_view.inverse());
@@ -205,17 +214,11 @@ TrackingResult resultOf(const Alignment& a, const ModelPoints& model, const Fram
     result.photometric_rmse = std::sqrt(e.photometric_error / e.photometric_inliers);
   }
   if (!a.solvable) return result;
-  const PoseSystem system = combine(e, share, prior, a.T_frame_view);
+  const PoseSystem system = combine(images, prior, a.T_frame_view);
   result.free_directions = system.free_directions;
   result.prior_weight = system.prior_weight;
   result.converged = a.last_step < kConvergedStep;
   result.covariance = system.H.ldlt().solve(Matrix6d::Identity());
-  const PlaceErrors places = placeErrors(model, frame, a.T_frame_view, a.settings);
-  result.distance_m = places.distance_m;
-  const double held = system.prior_weight / kSameError_frames;
-  const ImageSystem images = withoutNoise(e, share, prior);
-  const Matrix6d pull = (images.H + held * prior.information).ldlt().solve(images.kept);
-  result.systematic = pull * places.gradient * pull.transpose();
   return result;
 }
 
@@ -242,7 +245,13 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
     share = static_cast<double>(1 << (2 * i)) / pixels_per_measurement;
     alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
-  return resultOf(a, model.level(0), frame.levels[0], share, prior, start.T_map_view);
+  const ImageSystem images = withoutNoise(a.equations, share, prior);
+  TrackingResult result = resultOf(a, images, prior, start.T_map_view);
+  if (a.solvable && start.with_systematic) {
+    addSystematic(placeErrors(model.level(0), frame.levels[0], a.T_frame_view, a.settings), images,
+                  prior, result);
+  }
+  return result;
 }
 
 }  // namespace pf

@@ -37,8 +37,8 @@ struct LoopCounts {
 
   std::size_t allRefused() const;
 
-  /// Adds what was compared before, and how that ended.
-  void addPairs(const LoopCounts& before);
+  /// Adds the work of before; keyframes and ferns are those that are known now.
+  void addWork(const LoopCounts& before);
 };
 
 /// Finds pairs of keyframes that see the same place. Candidates come from the ferns, from nearness

@@ -52,9 +52,10 @@ struct FrameStatus {
   int fragment = kFirstFragment;  ///< that the pose is in
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
   TrackingResult tracking;
-  SparseMotion motion;           ///< since the frame before
-  std::string detail;            ///< the reason in words
-  bool is_other_camera = false;  ///< refused because it is not of the map's camera
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the pose, as published: Location::covariance
+  SparseMotion motion;                     ///< since the frame before
+  std::string detail;                      ///< the reason in words
+  bool is_other_camera = false;            ///< refused because it is not of the map's camera
   std::size_t surfels = 0;
   int map_version = 0;     ///< number of corrections by loops so far
   bool map_full = false;   ///< the memory limit keeps new surfels out

@@ -20,9 +20,10 @@ struct TrackingResult {
   double cost = 0;                         ///< mean robust cost of the candidates, 0 to 1
   Brightness brightness;                   ///< of the frame against the model
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
-  /// The same of what the sensor's errors that do not average out add to it.
+  /// The same of what the sensor's errors that do not average out add to it; where it was asked
+  /// for.
   Matrix6d systematic = Matrix6d::Zero();
-  double distance_m = 0;    ///< of what was aligned, mean
+  double distance_m = 0;    ///< of what was aligned, mean; where it was asked for
   double prior_weight = 1;  ///< left to the prior, (0, 1]: the images may contradict it
 };
 

@@ -20,9 +20,10 @@ struct PosePrior {
 struct TrackingStart {
   Eigen::Isometry3d T_map_view = Eigen::Isometry3d::Identity();    ///< the model's camera
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< first guess
-  PosePrior prior;             ///< a weak factor, which decides where the images say little
-  Brightness brightness;       ///< first guess
-  bool prior_is_firm = false;  ///< else the prior gives way where the images contradict it
+  PosePrior prior;               ///< a weak factor, which decides where the images say little
+  Brightness brightness;         ///< first guess
+  bool prior_is_firm = false;    ///< else the prior gives way where the images contradict it
+  bool with_systematic = false;  ///< TrackingResult::systematic and distance_m are wanted
 };
 
 /// Aligns a frame with the model seen in a view: Gauss-Newton from the coarsest level to the
