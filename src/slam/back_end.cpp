@@ -85,6 +85,19 @@ Deformation BackEnd::remeasure(const std::vector<PoseConstraint>& constraints) {
   return result.accepted ? std::move(result.deformation) : Deformation();
 }
 
+Deformation BackEnd::retrack(const PoseConstraint& step) {
+  GraphResult result = graph_.retrack(step);
+  return result.accepted ? std::move(result.deformation) : Deformation();
+}
+
+std::optional<PoseConstraint> BackEnd::stepTo(int keyframe) const {
+  const auto& all = graph_.constraints();
+  const auto found = std::find_if(all.rbegin(), all.rend(), [&](const PoseConstraint& c) {
+    return c.kind == ConstraintKind::odometry && c.to == keyframe;
+  });
+  return found == all.rend() ? std::nullopt : std::optional<PoseConstraint>(*found);
+}
+
 Trajectory BackEnd::trajectory() const {
   Trajectory poses;
   poses.reserve(frames_.size() - loaded_frames_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +58,12 @@ class BackEnd {
 
   /// Constraints measured anew; see PoseGraph::remeasure(). Returns what the map is to follow.
   Deformation remeasure(const std::vector<PoseConstraint>& constraints);
+
+  /// A step of tracking measured anew; see PoseGraph::retrack().
+  Deformation retrack(const PoseConstraint& step);
+
+  /// The step by which a keyframe was tracked from another; nothing for the first of a piece.
+  std::optional<PoseConstraint> stepTo(int keyframe) const;
 
   /// A correction that moves no keyframe.
   void countCorrection() { graph_.countCorrection(); }
