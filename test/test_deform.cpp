@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <random>
 
@@ -106,6 +107,30 @@ TEST(Deform, WhatWasMadeWhereNothingMovesKeepsItsBitsAndItsBlock) {
       ++j;
     }
   }
+}
+
+TEST(Deform, BlocksOlderThanWhatMovesAreLeftAsIfTheyHadBeenLookedAt) {
+  // Filled frame by frame, as a camera does it: what was seen first was changed last long ago.
+  const SurfelArrays all = wall();
+  SurfelMap map = mapOf({});
+  map.clear();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    map.advance();
+    std::vector<std::uint32_t> made;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all.created[i] == frame) made.push_back(static_cast<std::uint32_t>(i));
+    }
+    SurfelArrays some;
+    some.append(all, made.data(), made.size());
+    map.add(some);
+  }
+  const auto old = std::count_if(map.blocks().begin(), map.blocks().end(),
+                                 [](const SurfelBlock& block) { return block.changed < 40; });
+  ASSERT_GT(old, 0);
+  SurfelMap whole = mapOf(all);  // all its blocks are new
+  deform(map, bend());
+  deform(whole, bend());
+  expectEqual(map, whole);
 }
 
 TEST(Deform, OneFragmentJoinsAnotherAndThatStays) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "posefusion/core/se3.hpp"
 
 namespace pf {
@@ -45,6 +47,19 @@ TEST(Deformation, MovesNothingToTheBitWhereNoNeighbourMoves) {
   for (const int frame : {-5, 0, 4, 10}) {
     EXPECT_TRUE(same(d.at(frame), Eigen::Isometry3d::Identity(), 0)) << frame;
   }
+}
+
+TEST(Deformation, TellsFromWhichFrameOnItMoves) {
+  using Frames = std::numeric_limits<std::int32_t>;
+  EXPECT_EQ(example().firstMoved(0), 11);
+  EXPECT_FALSE(same(example().at(11), Eigen::Isometry3d::Identity(), 0));
+  EXPECT_EQ(example().firstMoved(1), Frames::max()) << "it has no node there";
+  EXPECT_EQ(Deformation().firstMoved(0), Frames::max());
+  const Deformation all(1, {{5, motion(0.3, 0.1), true}});
+  EXPECT_EQ(all.firstMoved(0), Frames::min()) << "what is older goes with the first node";
+  const Deformation apart(1,
+                          {{5, Eigen::Isometry3d::Identity(), false}, {9, motion(0.3, 0.1), true}});
+  EXPECT_EQ(apart.firstMoved(0), 9) << "nothing is blended where nothing was tracked";
 }
 
 TEST(Deformation, IsTheCorrectionAtItsNodesAndGoesSteadilyBetween) {

@@ -2,6 +2,7 @@
 #include "posefusion/graph/deformation.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "posefusion/core/se3.hpp"
@@ -42,6 +43,20 @@ Eigen::Isometry3d Deformation::at(std::int32_t map_frame, int fragment) const {
   const double share = (static_cast<double>(map_frame) - before->map_frame) / span;
   const Vector6d step = logSe3(before->correction.inverse() * after->correction);
   return before->correction * expSe3(share * step);
+}
+
+std::int32_t Deformation::firstMoved(int fragment) const {
+  using Frames = std::numeric_limits<std::int32_t>;
+  const Node* before = nullptr;
+  for (const Node& node : nodes_) {
+    if (node.fragment != fragment) continue;
+    if (!isIdentityMotion(node.correction)) {
+      if (before == nullptr) return Frames::min();
+      return before->leads_on ? before->map_frame + 1 : node.map_frame;
+    }
+    before = &node;
+  }
+  return Frames::max();
 }
 
 }  // namespace pf

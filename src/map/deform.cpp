@@ -14,8 +14,9 @@ namespace {
 /// The corrections of all frames that made a surfel.
 class Motions {
  public:
-  Motions(const SurfelMap& map, const Deformation& deformation) {
+  Motions(const SurfelMap& map, const Deformation& deformation) : deformation_(deformation) {
     for (const SurfelBlock& block : map.blocks()) {
+      if (isOld(block)) continue;
       for (const std::int32_t frame : block.surfels.created) {
         const Origin origin(block.fragment, frame);
         if (origins_.empty() || origins_.back() != origin) origins_.push_back(origin);
@@ -37,6 +38,7 @@ class Motions {
 
   /// Moves the surfels of a block whose correction is not the identity.
   void apply(SurfelBlock& block, std::vector<char>& moved) const {
+    if (isOld(block)) return;
     SurfelArrays& s = block.surfels;
     std::size_t k = 0;  // where the search begins: neighbours are mostly of one frame
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -53,8 +55,15 @@ class Motions {
   }
 
  private:
+  /// All that is in the block was there before anything that moves: a correction of the last step
+  /// costs what was seen since, whatever the size of the map.
+  bool isOld(const SurfelBlock& block) const {
+    return block.changed < deformation_.firstMoved(block.fragment);
+  }
+
   using Origin = std::pair<int, std::int32_t>;  // fragment and frame
-  std::vector<Origin> origins_;                 // ascending, and for each:
+  const Deformation& deformation_;
+  std::vector<Origin> origins_;  // ascending, and for each:
   std::vector<RigidMotion> motions_;
   std::vector<char> moves_;
 };

@@ -177,16 +177,16 @@ void SurfelMap::move(const Mover& mover, const std::function<int(int)>& fragment
       const int fragment = fragment_after(block.fragment);
       std::vector<char> moved(s.size(), 0);
       mover(block, moved);
+      const bool any = fragment != block.fragment ||
+                       std::find(moved.begin(), moved.end(), char{1}) != moved.end();
+      if (!any) continue;
       std::vector<std::uint32_t> stay, leave;
-      bool any = fragment != block.fragment;
       for (std::size_t i = 0; i < s.size(); ++i) {
-        any |= moved[i] != 0;
         const bool left =
             fragment != block.fragment ||
             (moved[i] != 0 && !(cellAt(fragment, s.x[i], s.y[i], s.z[i]) == cells[b]));
         (left ? leave : stay).push_back(static_cast<std::uint32_t>(i));
       }
-      if (!any) continue;
       gone[b].append(s, leave.data(), leave.size());
       keepOnly(stay, block);
     }

@@ -44,6 +44,9 @@ class Deformation {
   /// the last; a fragment without nodes stays.
   Eigen::Isometry3d at(std::int32_t map_frame, int fragment = kFirstFragment) const;
 
+  /// What was made in a fragment before this frame stays where it is.
+  std::int32_t firstMoved(int fragment) const;
+
   /// The fragment that what was in `fragment` is part of afterwards.
   int fragmentAfter(int fragment) const {
     return join_ && join_->fragment == fragment ? join_->into : fragment;

@@ -73,9 +73,9 @@ class PoseGraph {
   GraphResult remeasure(const std::vector<PoseConstraint>& constraints);
 
   /// A step of tracking, measured anew by the pictures of its two keyframes, replaces what tracking
-  /// said, and what hangs on the step alone moves rigidly with it: there is nothing to solve. Nothing
-  /// changes where the two contradict each other by more than max_chi_square, or where loops lead
-  /// past the step.
+  /// said, and what hangs on the step alone moves rigidly with it: there is nothing to solve.
+  /// Nothing changes where the two contradict each other by more than max_chi_square, or where
+  /// loops lead past the step.
   GraphResult retrack(const PoseConstraint& step);
 
   /// Counts a correction that moves no keyframe.
