@@ -14,7 +14,7 @@ PoseConstraint stepOf(const Poses& truth, int from) {
 TEST(PoseGraphSteps, TrackingThatDriftsIsPutRightStepByStep) {
   const Poses truth = figureEight();
   const Poses tracked = drifted(truth, kYawDrift);
-  ASSERT_GT(distance(tracked.back(), truth.back()), 0.1);
+  ASSERT_GT(distance(tracked.back(), truth.back()), 0.03);
   PoseGraph graph((GraphConfig()));
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (i == 0) {
