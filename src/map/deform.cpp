@@ -2,6 +2,7 @@
 #include "posefusion/map/deform.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace {
 /// The corrections of all frames that made a surfel.
 class Motions {
  public:
-  Motions(const SurfelMap& map, const Deformation& deformation) : deformation_(deformation) {
+  Motions(const SurfelMap& map, const Deformation& deformation) {
     for (const SurfelBlock& block : map.blocks()) {
+      const auto [first, is_new] = first_moved_.try_emplace(block.fragment, 0);
+      if (is_new) first->second = deformation.firstMoved(block.fragment);
       if (isOld(block)) continue;
       for (const std::int32_t frame : block.surfels.created) {
         const Origin origin(block.fragment, frame);
@@ -58,12 +61,12 @@ class Motions {
   /// All that is in the block was there before anything that moves: a loop costs what was seen
   /// since its older keyframe, whatever the size of the map.
   bool isOld(const SurfelBlock& block) const {
-    return block.changed < deformation_.firstMoved(block.fragment);
+    return block.changed < first_moved_.at(block.fragment);
   }
 
   using Origin = std::pair<int, std::int32_t>;  // fragment and frame
-  const Deformation& deformation_;
-  std::vector<Origin> origins_;  // ascending, and for each:
+  std::map<int, std::int32_t> first_moved_;     // of each fragment
+  std::vector<Origin> origins_;                 // ascending, and for each:
   std::vector<RigidMotion> motions_;
   std::vector<char> moves_;
 };
