@@ -51,7 +51,7 @@ TEST_F(DeviceLeaks, NoneOver1000TimesOpenAndClose) {
       ASSERT_TRUE(eventually([&] { return frames > 2; }));
       if (!settings.frame_sync) continue;
       virtualDevice().stalled = true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // one may be under way
+      ASSERT_TRUE(eventually([] { return virtualDevice().under_way == 0; }));
     }
   };
   openAndClose(100);

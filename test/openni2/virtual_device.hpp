@@ -43,6 +43,7 @@ struct VirtualDevice {
   std::atomic<int> open_streams{0};     ///< now
   std::atomic<int> running_streams{0};  ///< now
   std::atomic<int> sent{0};             ///< frames of both streams
+  std::atomic<int> under_way{0};        ///< streams that are giving the library a frame
 
   /// Steady clock when the last frame was given to the library, nanoseconds: colour, depth.
   std::array<std::atomic<std::int64_t>, 2> raised_ns{0, 0};

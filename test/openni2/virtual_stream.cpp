@@ -164,12 +164,20 @@ void VirtualStream::run() {
   int index = static_cast<int>((Clock::now() - started_) / period) + 1;
   for (; running_; ++index) {
     std::this_thread::sleep_until(started_ + index * period);
-    if (!device_.plugged || device_.stalled || isEachNth(index, device_.drop_every)) continue;
-    if (isEachNth(index, device_.late_every)) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(device_.late_by_ms));
-    }
-    send(index);
+    // Counted before the flags are read: who stalls the camera and then sees none under way knows
+    // that none comes.
+    ++device_.under_way;
+    sendUnlessSilent(index);
+    --device_.under_way;
   }
+}
+
+void VirtualStream::sendUnlessSilent(int index) {
+  if (!device_.plugged || device_.stalled || isEachNth(index, device_.drop_every)) return;
+  if (isEachNth(index, device_.late_every)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(device_.late_by_ms));
+  }
+  send(index);
 }
 
 void VirtualStream::send(int index) {

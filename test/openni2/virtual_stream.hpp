@@ -40,6 +40,7 @@ class VirtualStream : public oni::driver::StreamBase {
   OniStatus getCamera(int id, void* data, int* size) const;
   float fov(bool horizontal) const;
   void run();
+  void sendUnlessSilent(int index);
   void send(int index);
   void raise(int index, bool cut);
 
