@@ -16,7 +16,7 @@ struct PairModel {
   double rest_per_m = 0.005;
   std::size_t patches = 1000;  ///< of each view are compared, spread over it
   /// Standard deviation of the pose of a pair: loops and tracking leave it (m, rad).
-  double pose_sigma_m = 0.03, pose_sigma_rad = 0.015;
+  double pose_sigma_m = 0.3, pose_sigma_rad = 0.15;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
   double robust_scale = 2.0;
 
