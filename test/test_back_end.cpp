@@ -35,6 +35,22 @@ TEST(BackEnd, MakesAKeyframeOfWhatMovedOrTurned) {
   EXPECT_EQ(back_end.graph().constraints().size(), 2U);
 }
 
+TEST(BackEnd, AStepLeadsOnIntoWhatNoOtherKeyframeSeesFromNearer) {
+  BackEnd back_end{GraphConfig{}};
+  for (int i = 0; i < 4; ++i) back_end.add(fusedAt(i, along(0.5 * i)));
+  EXPECT_FALSE(back_end.stepTo(0));
+  const auto step = back_end.stepTo(3);
+  ASSERT_TRUE(step);
+  EXPECT_EQ(step->from, 2);
+  EXPECT_EQ(step->to, 3);
+  ASSERT_EQ(back_end.add(fusedAt(4, along(0.95))), 4);
+  EXPECT_FALSE(back_end.stepTo(4)) << "keyframe 2 is nearer than the last";
+  FusedFrame found = fusedAt(5, along(1.1));
+  found.is_return = true;
+  ASSERT_EQ(back_end.add(found), 5);
+  EXPECT_FALSE(back_end.stepTo(5)) << "a return was not tracked";
+}
+
 TEST(BackEnd, AReturnIsTiedToTheNearestKeyframe) {
   BackEnd back_end{GraphConfig{}};
   for (int i = 0; i < 6; ++i) back_end.add(fusedAt(i, along(0.5 * i)));

@@ -8,13 +8,11 @@
 #include <tuple>
 #include <utility>
 
+#include "graph_attempt.hpp"
 #include "pose_solver.hpp"
-#include "posefusion/graph/pose_graph.hpp"
 
 namespace pf {
 namespace {
-
-constexpr const char* kConfirms = "the new loops only confirm what is there";
 
 /// For each keyframe the first keyframe of its connected part.
 std::vector<std::size_t> firstOfParts(std::size_t keyframes,
@@ -58,13 +56,6 @@ std::string strainText(double strain, double most) {
 }
 
 }  // namespace
-
-/// The graph with some new loops, optimised.
-struct PoseGraph::Attempt {
-  std::vector<Keyframe> keyframes;
-  std::vector<GraphResult::Error> errors;  ///< of the constraints that hold, then of the new ones
-  std::string reason;                      ///< why it cannot be accepted; empty: it can
-};
 
 PoseGraph::Attempt PoseGraph::attempt(const std::vector<Keyframe>& from,
                                       const std::vector<PoseConstraint>& loops) const {
@@ -218,30 +209,6 @@ GraphResult PoseGraph::optimise() {
   constraints_.insert(constraints_.end(), loops.begin(), loops.end());
   GraphResult result;
   result.reason = kConfirms;
-  return result;
-}
-
-GraphResult PoseGraph::remeasure(const std::vector<PoseConstraint>& constraints) {
-  const std::vector<PoseConstraint> before = constraints_;
-  for (const PoseConstraint& fresh : constraints) {
-    const auto old = std::find_if(constraints_.begin(), constraints_.end(), [&](const auto& c) {
-      return c.from == fresh.from && c.to == fresh.to && c.kind == fresh.kind;
-    });
-    if (old == constraints_.end()) continue;
-    PoseConstraint checked = checkedLoop(fresh);
-    checked.kind = fresh.kind;
-    *old = checked;
-  }
-  GraphResult result;
-  Attempt tried = attemptAll();
-  result.reason = tried.reason;
-  if (result.reason.empty() && isWorthMoving(tried.keyframes)) {
-    accept(tried, result);
-  } else if (!result.reason.empty()) {
-    constraints_ = before;
-  } else {
-    result.reason = kConfirms;
-  }
   return result;
 }
 

@@ -116,6 +116,9 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
     if (question.keyframe->id == 0) beginMap();
     Stopwatch watch;
     addKeyframe(*question.keyframe);
+    if (question.step) {
+      for (const PoseConstraint& step : closer_.remeasure({*question.step})) answer.step = step;
+    }
     answer.loops = closer_.findLoops();
     answer.verification_ms = watch.lapMs();
   }

@@ -58,8 +58,8 @@ class Motions {
   }
 
  private:
-  /// All that is in the block was there before anything that moves: a loop costs what was seen
-  /// since its older keyframe, whatever the size of the map.
+  /// All that is in the block was there before anything that moves: a correction of the last step
+  /// costs what was seen since, whatever the size of the map.
   bool isOld(const SurfelBlock& block) const {
     return block.changed < first_moved_.at(block.fragment);
   }

@@ -9,11 +9,11 @@
 
 namespace pf {
 
-int BackEnd::nearest(const MapPose& pose) const {
+int BackEnd::nearest(const MapPose& pose, int before) const {
   int nearest = -1;
   double least = std::numeric_limits<double>::max();
   for (const Keyframe& keyframe : graph_.keyframes()) {
-    if (keyframe.fragment != pose.fragment) continue;
+    if (keyframe.fragment != pose.fragment || keyframe.id >= before) continue;
     const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * pose.T_map_camera;
     const double far = step.translation().norm() + angleOf(step);
     if (far >= least) continue;
@@ -83,6 +83,23 @@ Deformation BackEnd::remeasure(const std::vector<PoseConstraint>& constraints) {
   GraphResult result = graph_.remeasure(constraints);
   counts_.accepted += result.accepted ? 1 : 0;
   return result.accepted ? std::move(result.deformation) : Deformation();
+}
+
+Deformation BackEnd::retrack(const PoseConstraint& step) {
+  GraphResult result = graph_.retrack(step);
+  return result.accepted ? std::move(result.deformation) : Deformation();
+}
+
+std::optional<PoseConstraint> BackEnd::stepTo(int keyframe) const {
+  const Keyframe& to = graph_.keyframes().at(static_cast<std::size_t>(keyframe));
+  const int from = nearest({to.fragment, to.T_map_camera}, keyframe);
+  const auto& all = graph_.constraints();
+  const auto found = std::find_if(all.rbegin(), all.rend(), [&](const PoseConstraint& c) {
+    return c.kind == ConstraintKind::odometry && c.from == from && c.to == keyframe;
+  });
+  // A return is tied to the nearest keyframe, but not tracked from it.
+  if (found == all.rend() || from + 1 != keyframe) return std::nullopt;
+  return *found;
 }
 
 Trajectory BackEnd::trajectory() const {

@@ -39,6 +39,7 @@ StaticFrame Mapper::State::corrected(const StaticFrame& input) {
 /// Of its sensor's systematic error only what the calibration leaves is still to be reckoned with.
 void Mapper::State::use(std::optional<DepthCalibration> known) {
   calibration = std::move(known);
+  is_calibration_loaded = calibration.has_value();
   const DepthField field = calibration ? calibration->field : DepthField();
   corrector = DepthCorrector(field);
   distorter = DepthCorrector(field.inverse());
@@ -69,6 +70,7 @@ void Mapper::State::improve(const DepthCalibration& step) {
     known.before_mm = calibration->before_mm;
   }
   use(std::move(known));
+  is_calibration_loaded = false;
   ++depth_version;
   correctDepthBy(step.field, step.left_per_m);
   back_end.countCorrection();

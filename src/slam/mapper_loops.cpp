@@ -63,7 +63,11 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   }
   const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
   views.push_back(keyframeView(frame, id, location.pose(), nobody));
-  if (config.loop.enabled) question->keyframe = views.back();
+  if (!config.loop.enabled) return;
+  question->keyframe = views.back();
+  // As long as depth is off by a field that is not known well, two pictures tell a turn worse than
+  // the map, which is the mean of many.
+  if (is_calibration_loaded) question->step = back_end.stepTo(id);
 }
 
 /// Begins a question, or goes on with it, by what the closer does not know yet.
@@ -151,6 +155,11 @@ void Mapper::take(const LoopAnswer& answer) {
       s.localiser.suggest(answer.place->pose(), s.T_reckoned_at_question);
       if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(*answer.place);
     }
+  }
+  // Of depth as it was before, pictures say something else.
+  if (answer.step && s.may_change && answer.depth_version == s.depth_version) {
+    const std::vector<MapPose> before = s.back_end.keyframePoses();
+    s.follow({s.back_end.retrack(*answer.step)}, before);
   }
   if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
   s.take(answer);

@@ -70,6 +70,7 @@ struct Mapper::State {
   std::optional<DepthCalibration> calibration;  ///< nothing: depth is taken as measured
   DepthCorrector corrector{DepthField()};       ///< by it
   int depth_version = 0;                        ///< how often it was learned anew
+  bool is_calibration_loaded = false;           ///< of an earlier recording, and unchanged
   bool constraints_are_old = false;             ///< measured with depth as it was before
   bool calibration_is_asked = false;
   std::string last_calibration;

@@ -60,11 +60,11 @@ struct FieldEstimate {
   double left_per_m() const;
 };
 
-/// Estimates the field of a camera from keyframes whose poses are known well (loops are closed):
-/// Gauss-Newton over the residuals of all overlapping pairs, poses held but for a small error of
-/// each pair. The same bytes for any order of the views and any number of threads. Where there is
-/// too little the field is zero, and the reason says what is missing. Throws InputError for a view
-/// whose image and camera do not fit together.
+/// Estimates the field of a camera from keyframes whose poses are roughly known: Gauss-Newton over
+/// the residuals of all overlapping pairs, each pair with a pose of its own. The same bytes for any
+/// order of the views and any number of threads. Where there is too little the field is zero, and
+/// the reason says what is missing. Throws InputError for a view whose image and camera do not fit
+/// together.
 FieldEstimate estimateField(const std::vector<CalibrationView>& views,
                             const FieldEstimateConfig& config = {});
 

@@ -72,6 +72,12 @@ class PoseGraph {
   /// max_chi_square. What does not hold, or is no more, is left out.
   GraphResult remeasure(const std::vector<PoseConstraint>& constraints);
 
+  /// A step of tracking, measured anew by the pictures of its two keyframes, replaces what tracking
+  /// said, and what hangs on the step alone moves rigidly with it: there is nothing to solve.
+  /// Nothing changes where the two contradict each other by more than max_chi_square, or where
+  /// loops lead past the step.
+  GraphResult retrack(const PoseConstraint& step);
+
   /// Counts a correction that moves no keyframe.
   void countCorrection() { ++version_; }
 
@@ -99,6 +105,7 @@ class PoseGraph {
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
   bool isMet(const PoseConstraint& loop) const;
+  bool isOnlyWay(const PoseConstraint& step) const;
   bool isWorthMoving(const std::vector<Keyframe>& corrected) const;
   void accept(Attempt& attempt, GraphResult& result);
   Deformation deformationTo(const std::vector<Keyframe>& corrected) const;

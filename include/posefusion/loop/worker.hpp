@@ -29,6 +29,8 @@ struct PlaceQuestion {
 struct LoopQuestion {
   std::int64_t stamp_ns = 0;             ///< of the frame that asks
   std::optional<KeyframeView> keyframe;  ///< number 0 begins a new map
+  /// By which the keyframe was tracked from another, to be measured by their pictures.
+  std::optional<PoseConstraint> step;
   /// The keyframes of a map just loaded, as far as their images are known: what was before is
   /// forgotten.
   std::optional<std::vector<KeyframeView>> known;
@@ -46,7 +48,8 @@ struct LoopQuestion {
 
 /// What was found.
 struct LoopAnswer {
-  std::vector<LoopConstraint> loops;  ///< of the keyframe
+  std::vector<LoopConstraint> loops;   ///< of the keyframe
+  std::optional<PoseConstraint> step;  ///< of the question, as its pictures have it
   /// What it took to find and verify them all; 0 where there was no keyframe, or nobody measured.
   double verification_ms = 0;
   bool asked_for_place = false;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,8 +39,9 @@ class BackEnd {
         loaded_frames_(frames_.size()),
         loaded_keyframes_(graph_.keyframes().size()) {}
 
-  /// The keyframe that saw the fragment from about this pose; -1: the fragment has none.
-  int nearest(const MapPose& pose) const;
+  /// The keyframe that saw the fragment from about this pose, of those with lower numbers than
+  /// `before`; -1: the fragment has none.
+  int nearest(const MapPose& pose, int before = std::numeric_limits<int>::max()) const;
 
   /// Takes in a fused frame. Returns the number of the keyframe that it has become, or -1. The
   /// first one of a fragment is tied to no other; one in another fragment than the last is a
@@ -57,6 +60,14 @@ class BackEnd {
 
   /// Constraints measured anew; see PoseGraph::remeasure(). Returns what the map is to follow.
   Deformation remeasure(const std::vector<PoseConstraint>& constraints);
+
+  /// A step of tracking measured anew; see PoseGraph::retrack().
+  Deformation retrack(const PoseConstraint& step);
+
+  /// The step by which a keyframe was tracked on from the one before, into what no other keyframe
+  /// sees from nearer. Nothing for the first of a piece, and where the camera is back: there the
+  /// map that it was tracked against is older than the step, and holds it.
+  std::optional<PoseConstraint> stepTo(int keyframe) const;
 
   /// A correction that moves no keyframe.
   void countCorrection() { graph_.countCorrection(); }

@@ -57,7 +57,7 @@ struct FrameStatus {
   std::string detail;                      ///< the reason in words
   bool is_other_camera = false;            ///< refused because it is not of the map's camera
   std::size_t surfels = 0;
-  int map_version = 0;     ///< number of corrections by loops so far
+  int map_version = 0;     ///< number of corrections so far
   bool map_full = false;   ///< the memory limit keeps new surfels out
   double tracking_ms = 0;  ///< preprocessing, rendering and alignment
   double fusion_ms = 0;    ///< fusion and cleaning
