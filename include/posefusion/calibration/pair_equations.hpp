@@ -15,8 +15,8 @@ struct PairModel {
   /// as yet unknown field, finer structure than the grid, normals.
   double rest_per_m = 0.005;
   std::size_t patches = 1000;  ///< of each view are compared, spread over it
-  /// To so much (m, rad) the pose of a pair is held to the map's. Next to nothing: it was found with
-  /// depth that is off by the field, and would hold the field to its own error.
+  /// To so much (m, rad) the pose of a pair is held to the map's. Next to nothing: it was found
+  /// with depth that is off by the field, and would hold the field to its own error.
   double pose_sigma_m = 0.3, pose_sigma_rad = 0.15;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
   double robust_scale = 2.0;
