@@ -38,28 +38,33 @@ void Mapper::State::alignPairs(Refinement& done) {
   correct(loops);
 }
 
-/// What all keyframes together tell of the depth camera; whether it was worth taking.
-bool Mapper::State::learnFromAll() {
-  if (!config.calibration.learns()) return false;
+/// Takes in what all keyframes together tell of the depth camera. Returns why pairs of pictures
+/// would not better the map; empty: they would.
+std::string Mapper::State::learnFromAll() {
+  if (calibration && !config.calibration.learns()) return {};
   placeViews();
   std::vector<CalibrationView> seen;
   for (const KeyframeView& view : views) seen.push_back(calibrationView(view, sensor));
   const FieldEstimate estimate = estimateField(seen);
-  if (!(calibration ? estimate.doubtOfStep(true) : estimate.reason).empty()) return false;
-  improve(estimate.asCalibration());
-  return true;
+  const bool is_off = (calibration ? estimate.doubtOfStep(true) : estimate.reason).empty();
+  if (is_off && config.calibration.learns()) {
+    improve(estimate.asCalibration());
+    return {};
+  }
+  if (is_off) return "depth is off by a field that it is not corrected by (calibration.mode)";
+  const bool is_known = calibration || estimate.kept_out.pairs > 0;
+  return is_known ? std::string() : "what depth is off by is not known: " + estimate.reason;
 }
 
 Mapper::Refinement Mapper::refine() {
   State& s = *state_;
   Refinement result;
-  if (!s.may_change || s.views.empty()) return result;
+  if (!s.may_change) result.reason = "the map may not change";
+  if (s.views.empty()) result.reason = "there are no pictures of keyframes";
+  if (!result.reason.empty()) return result;
   const std::vector<MapPose> before = s.back_end.keyframePoses();
-  s.alignPairs(result);
-  if (s.learnFromAll()) {
-    result.pairs = result.measured = 0;
-    s.alignPairs(result);
-  }
+  result.reason = s.learnFromAll();
+  if (result.reason.empty()) s.alignPairs(result);
   result.largest_shift_m = largestShiftM(before, s.back_end.keyframePoses());
   return result;
 }

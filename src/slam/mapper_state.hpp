@@ -120,7 +120,7 @@ struct Mapper::State {
   void improve(const DepthCalibration& step);
   void placeViews();
   void alignPairs(Refinement& done);
-  bool learnFromAll();
+  std::string learnFromAll();
   void correctDepthBy(const DepthField& step, double left_per_m);
 };
 

@@ -76,12 +76,15 @@ class Mapper {
   struct Refinement {
     std::size_t pairs = 0, measured = 0;  ///< of keyframes: compared, and found to agree
     double largest_shift_m = 0;           ///< of a keyframe; 0: nothing has moved
+    std::string reason;                   ///< why none was compared; empty: they were
   };
 
-  /// The best that the pictures of the keyframes allow: all that see the same surface are aligned
-  /// with each other, and the graph, the map and all poses follow; what they tell all together of
-  /// the depth camera is taken in (where mapping learns), and then once more. Seconds of work for a
-  /// hundred keyframes: for when no frame waits. Nothing changes where the map must not.
+  /// The best that the pictures of the keyframes allow: what they tell all together of the depth
+  /// camera is taken in (where mapping learns), then all that see the same surface are aligned with
+  /// each other, and the graph, the map and all poses follow. Seconds of work for a hundred
+  /// keyframes: for when no frame waits. Nothing is aligned where depth is off by what is not
+  /// corrected or not known: two pictures see a place at two sides of the image, and would bend the
+  /// map more than tracking, which saw it everywhere. Nothing changes where the map must not.
   Refinement refine();
 
   /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
