@@ -8,8 +8,8 @@ from bench_report import call
 from bench_maps import Maps
 from bench_runs import PROGRAMS, note
 
-WALKING_BARS_M = {"walking_static": 0.005, "walking_xyz": 0.010, "walking_halfsphere": 0.016,
-                  "walking_rpy": 0.020}
+WALKING_BARS_M = {"walking_static": 0.0015, "walking_xyz": 0.004, "walking_halfsphere": 0.006,
+                  "walking_rpy": 0.008}
 WALKING_SECONDS = 30
 
 
