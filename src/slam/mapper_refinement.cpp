@@ -20,7 +20,6 @@ void Mapper::State::placeViews() {
 /// Aligns all pairs; the graph, the map and all poses follow.
 void Mapper::State::alignPairs(Refinement& done) {
   const std::vector<MapPose> before = back_end.keyframePoses();
-  placeViews();
   std::vector<const KeyframeView*> seen;
   for (const KeyframeView& view : views) seen.push_back(&view);
   const std::vector<PoseConstraint>& known = back_end.graph().constraints();
@@ -42,7 +41,6 @@ void Mapper::State::alignPairs(Refinement& done) {
 /// would not better the map; empty: they would.
 std::string Mapper::State::learnFromAll() {
   if (calibration && !config.calibration.learns()) return {};
-  placeViews();
   std::vector<CalibrationView> seen;
   for (const KeyframeView& view : views) seen.push_back(calibrationView(view, sensor));
   const FieldEstimate estimate = estimateField(seen);
@@ -63,6 +61,7 @@ Mapper::Refinement Mapper::refine() {
   if (s.views.empty()) result.reason = "there are no pictures of keyframes";
   if (!result.reason.empty()) return result;
   const std::vector<MapPose> before = s.back_end.keyframePoses();
+  s.placeViews();
   result.reason = s.learnFromAll();
   if (result.reason.empty()) s.alignPairs(result);
   result.largest_shift_m = largestShiftM(before, s.back_end.keyframePoses());
