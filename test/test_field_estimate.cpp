@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "calibration_room.hpp"
+#include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace pf {
@@ -56,6 +57,41 @@ TEST(FieldEstimate, aGoodCameraIsLeftAlone) {
     EXPECT_FALSE(estimate.worth_taking) << pose_error_m << ", " << estimate.kept_out.significance;
     EXPECT_NE(estimate.reason, "");
   }
+}
+
+TEST(FieldEstimate, repeatedItFindsNothingMore) {
+  auto views = distortedViews();
+  FieldEstimateConfig config;
+  config.known = distortedEstimate().field;
+  DepthCorrector corrector(config.known);
+  for (CalibrationView& view : views) view.depth_mm = corrector.likeInput(view.depth_mm, 1e-3);
+  const FieldEstimate again = estimateField(views, config);
+  EXPECT_LT(again.field.rms(), 0.3 * again.left_per_m());
+  EXPECT_NE(again.doubtOfStep(again.pairs), "");
+}
+
+TEST(FieldEstimate, aStepIsTakenFromMorePairsThatAgreeNoWorse) {
+  FieldEstimate step;
+  step.pairs = 130;
+  step.kept_out.pairs = 30;
+  step.kept_out.significance = -1.0;
+  EXPECT_EQ(step.doubtOfStep(100), "");
+  EXPECT_NE(step.doubtOfStep(110), "");
+  EXPECT_NE(step.doubtOfStep(0), "");
+  step.kept_out.significance = -2.0;
+  EXPECT_NE(step.doubtOfStep(100), "");
+  step.kept_out.significance = 4.0;
+  EXPECT_EQ(step.doubtOfStep(1000), "");
+}
+
+TEST(FieldEstimate, whereItsRangeEndsASensorIsNotBelieved) {
+  // Of a wall near the end only what is measured too near is left: it would bend the field.
+  CalibrationView view;
+  view.camera = test::roomCamera();
+  view.depth_mm = cv::Mat(view.camera.height, view.camera.width, CV_16UC1, cv::Scalar(4940));
+  EXPECT_TRUE(ViewSurface(view).patches().empty());
+  view.sensor.max_depth_m = 8.0;
+  EXPECT_FALSE(ViewSurface(view).patches().empty());
 }
 
 TEST(FieldEstimate, theOrderOfTheViewsAndThreadsDoNotMatter) {

@@ -15,8 +15,11 @@ namespace {
 
 // One chance in a thousand that luck alone does as well.
 constexpr double kSignificant = 3.1;
-// One in twenty: enough where the field found says the same by itself, and no more will be known.
+// One in twenty: pairs that agree worse by no more than that do not speak against a field.
 constexpr double kLikely = 1.64;
+// An estimate from so many times the pairs is better by itself: its variance falls with them. For
+// less the map is not moved.
+constexpr double kMore = 1.25;
 // The covariance knows of what differs between views alone: fields of simulated cameras were off by
 // two to three and a half times of it. Of many pairs the tiniest gain is no luck: what is taken out
 // must be clearly more than what may be put in, or a good camera would be made no better, or worse.
@@ -81,9 +84,12 @@ std::string doubtOf(const FieldEstimate& estimate) {
 
 bool FieldEstimate::standsOut() const { return field.rms() > left_per_m(); }
 
-std::string FieldEstimate::doubtOfStep(bool is_last) const {
+std::string FieldEstimate::doubtOfStep(std::size_t known_from_pairs) const {
   if (kept_out.pairs == 0) return reason;
-  if (kept_out.significance > (is_last && standsOut() ? kLikely : kSignificant)) return {};
+  if (kept_out.significance > kSignificant) return {};
+  const bool knows_more = known_from_pairs > 0 && static_cast<double>(pairs) >
+                                                      kMore * static_cast<double>(known_from_pairs);
+  if (knows_more && kept_out.significance > -kLikely) return {};
   return kNoBetter;
 }
 
@@ -124,7 +130,7 @@ FieldEstimate estimateFieldFrom(const std::vector<ViewSurface>& surfaces,
                       std::to_string(kFewestJudges * config.keep_out_every) + " or more";
     return estimate;
   }
-  FieldSolution solution = solveField(learned, surfaces, config);
+  FieldSolution solution = solveField(std::move(learned), surfaces, config);
   estimate.field = std::move(solution.field);
   estimate.covariance = std::move(solution.covariance);
   estimate.sigma_per_m = sigmaOf(estimate.field, estimate.covariance);

@@ -5,9 +5,8 @@ namespace pf {
 namespace {
 
 constexpr std::size_t kFewest = 10;  // keyframes: fewer never make enough pairs
-// Surfaces of that many keyframes are 20 MB, and their pairs a second of work.
+// Surfaces of that many keyframes are 20 MB, and their pairs two seconds of work.
 constexpr std::size_t kMostViews = 160;
-constexpr std::size_t kMostPatches = 200000;
 
 }  // namespace
 
@@ -28,15 +27,15 @@ void FieldLearner::setPoses(const std::vector<MapPose>& poses) {
   }
 }
 
-std::optional<FieldEstimate> FieldLearner::learn() {
+std::optional<FieldEstimate> FieldLearner::learn(const DepthField& known) {
   if (keyframes_ < kFewest || 4 * keyframes_ < 5 * estimated_at_) return std::nullopt;
-  return estimate();
+  return estimate(known);
 }
 
-FieldEstimate FieldLearner::estimate() {
+FieldEstimate FieldLearner::estimate(const DepthField& known) {
   estimated_at_ = keyframes_;
   FieldEstimateConfig config;
-  config.most_patches = kMostPatches;
+  config.known = known;
   return estimateFieldFrom(surfaces_, config);
 }
 

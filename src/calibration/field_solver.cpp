@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/calibration/view_poses.hpp"
 
 namespace pf {
 namespace {
@@ -19,7 +20,8 @@ constexpr double kConverged = 0.002;
 constexpr double kMedianOfNormal = 0.6745;
 
 /// Adds what is known of any camera: errors are small, and smooth over the image.
-void addPrior(const DepthField& field, const FieldEstimateConfig& config, FieldEquations& sum) {
+void addPrior(const DepthField& found, const FieldEstimateConfig& config, FieldEquations& sum) {
+  const DepthField field = config.known.then(found);
   const double node = 1.0 / (config.node_sigma_per_m * config.node_sigma_per_m);
   const double smooth = 1.0 / (config.smooth_sigma_per_m * config.smooth_sigma_per_m);
   const auto& d = field.nodes();
@@ -46,12 +48,11 @@ void addPrior(const DepthField& field, const FieldEstimateConfig& config, FieldE
 /// What the field leaves unexplained (1/m): such that half of the residuals are within the median
 /// of a normal distribution.
 double restOf(const std::vector<ViewPair>& pairs, const std::vector<ViewSurface>& surfaces,
-              const DepthField& field, const std::vector<Vector6d>& poses, const PairModel& model,
-              double most) {
+              const DepthField& field, const PairModel& model, double most) {
   std::vector<std::vector<Judged>> of_pair(pairs.size());
   parallelFor(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      of_pair[i] = residualsOf(pairs[i], surfaces, field, poses[i], model);
+      of_pair[i] = residualsOf(pairs[i], surfaces, field, model);
     }
   });
   std::size_t count = 0;
@@ -101,13 +102,13 @@ DepthField moved(const DepthField& field, const Eigen::VectorXd& step) {
 /// Of the sum over pairs the steps of their poses belong to the pairs.
 FieldEquations equationsOf(const std::vector<ViewPair>& pairs,
                            const std::vector<ViewSurface>& surfaces, const DepthField& field,
-                           const std::vector<Vector6d>& poses, const PairModel& model,
+                           const ViewPoses& views, const PairModel& model,
                            std::vector<PairStep>& steps) {
   return deterministicSum<FieldEquations>(
       pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
         FieldEquations sum;
         for (std::size_t i = begin; i < end; ++i) {
-          addPair(pairs[i], surfaces, field, poses[i], model, sum, steps[i]);
+          addPair(pairs[i], surfaces, field, views.apart(pairs[i]), model, sum, steps[i]);
         }
         return sum;
       });
@@ -119,15 +120,16 @@ FieldEquations equationsOf(const std::vector<ViewPair>& pairs,
 Eigen::MatrixXd scatterOf(const std::vector<ViewPair>& pairs,
                           const std::vector<ViewSurface>& surfaces,
                           const FieldEstimateConfig& config, const FieldSolution& solution,
-                          const std::vector<Vector6d>& poses) {
+                          ViewPoses views) {
   std::vector<PairStep> steps(pairs.size());
-  FieldEquations sum = equationsOf(pairs, surfaces, solution.field, poses, solution.model, steps);
+  FieldEquations sum = equationsOf(pairs, surfaces, solution.field, views, solution.model, steps);
+  views.eliminate(pairs, steps, sum);
   const FieldEquations data = sum;
   addPrior(solution.field, config, sum);
   Eigen::MatrixXd scatter = sum.H - data.H;  // the prior's own part
   Eigen::VectorXd of_view = Eigen::VectorXd::Zero(data.g.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    of_view += steps[i].g;
+    of_view += views.scoreOf(pairs[i], steps[i]);
     if (i + 1 < pairs.size() && pairs[i + 1].from == pairs[i].from) continue;
     scatter.noalias() += of_view * of_view.transpose();
     of_view.setZero();
@@ -171,32 +173,30 @@ double significanceOf(const std::vector<ViewPair>& pairs, const std::vector<doub
 
 }  // namespace
 
-FieldSolution solveField(const std::vector<ViewPair>& pairs,
-                         const std::vector<ViewSurface>& surfaces,
+FieldSolution solveField(std::vector<ViewPair> pairs, const std::vector<ViewSurface>& surfaces,
                          const FieldEstimateConfig& config) {
   FieldSolution solution;
   solution.field = DepthField(config.columns, config.rows);
   solution.model = config.model;
   solution.model.patches = config.most_patches / (2 * std::max<std::size_t>(1, pairs.size()));
-  std::vector<Vector6d> poses(pairs.size(), Vector6d::Zero());
   std::vector<PairStep> steps(pairs.size());
+  ViewPoses views(surfaces);
   for (int i = 0; i < config.most_steps; ++i) {
     if (i > 0) {
       solution.model.rest_per_m =
-          restOf(pairs, surfaces, solution.field, poses, solution.model, config.model.rest_per_m);
+          restOf(pairs, surfaces, solution.field, solution.model, config.model.rest_per_m);
     }
-    FieldEquations sum = equationsOf(pairs, surfaces, solution.field, poses, solution.model, steps);
+    FieldEquations sum = equationsOf(pairs, surfaces, solution.field, views, solution.model, steps);
+    views.eliminate(pairs, steps, sum);
     addPrior(solution.field, config, sum);
     const Step step = solveStep(sum, solution.field);
     solution.field = moved(solution.field, step.step);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      poses[k] += steps[k].own + steps[k].by_field * step.step;
-    }
+    views.move(step.step, steps, pairs);
     solution.residuals = sum.residuals;
     if (i > 1 && step.step.cwiseAbs().maxCoeff() < kConverged * config.node_sigma_per_m) break;
   }
   solution.field = solution.field.centred();
-  solution.covariance = scatterOf(pairs, surfaces, config, solution, poses);
+  solution.covariance = scatterOf(pairs, surfaces, config, solution, views);
   return solution;
 }
 
@@ -210,7 +210,7 @@ KeptOut judgeField(const std::vector<ViewPair>& pairs, const std::vector<ViewSur
   parallelFor(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto fit = [&](const DepthField& f) {
-        return residualsOf(pairs[i], surfaces, f, fittedPose(pairs[i], surfaces, f, model), model);
+        return residualsOf(fitted(pairs[i], surfaces, f, model), surfaces, f, model);
       };
       before[i] = fit(none);
       after[i] = fit(field);

@@ -15,8 +15,8 @@ struct FieldSolution {
   PairModel model;  ///< as in the last step
 };
 
-FieldSolution solveField(const std::vector<ViewPair>& pairs,
-                         const std::vector<ViewSurface>& surfaces,
+/// Pairs start from the poses given, views from theirs.
+FieldSolution solveField(std::vector<ViewPair> pairs, const std::vector<ViewSurface>& surfaces,
                          const FieldEstimateConfig& config);
 
 /// Compares a field with none, on pairs that it was not learned from.

@@ -23,10 +23,9 @@ void forSome(const std::vector<SurfacePatch>& patches, std::size_t most, const V
 /// Calls visit(residual, by_x) for the patches of both views; by_x: derivative by the pair's twist.
 template <typename Visit>
 void forResiduals(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                  const DepthField& field, const Vector6d& x, std::size_t patches,
-                  const Visit& visit) {
+                  const DepthField& field, std::size_t patches, const Visit& visit) {
   const ViewSurface &a = surfaces[pair.from], &b = surfaces[pair.to];
-  const Eigen::Isometry3d T_b_a = expSe3(x) * pair.T_to_from, T_a_b = T_b_a.inverse();
+  const Eigen::Isometry3d &T_b_a = pair.T_to_from, T_a_b = T_b_a.inverse();
   forSome(a.patches(), patches, [&](const SurfacePatch& patch) {
     if (const auto r = pairResidual(patch, a, b, T_b_a, field)) visit(*r, r->by_pose);
   });
@@ -52,21 +51,21 @@ struct PairSums {
   Eigen::MatrixXd half;
   Eigen::VectorXd squares;
 
-  PairSums(Eigen::Index nodes, const Vector6d& x, const PairModel& model)
+  explicit PairSums(Eigen::Index nodes)
       : P(Matrix6d::Zero()),
         p(Vector6d::Zero()),
         C(PoseFieldBlock::Zero(6, nodes)),
         half(Eigen::MatrixXd::Zero(nodes, nodes)),
-        squares(Eigen::VectorXd::Zero(nodes)) {
-    // A pose that is held has no variance: then nothing must move it.
-    const double m = std::max(model.pose_sigma_m, 1e-9), rad = std::max(model.pose_sigma_rad, 1e-9);
-    Vector6d information;
-    information << Eigen::Vector3d::Constant(1 / (m * m)),
-        Eigen::Vector3d::Constant(1 / (rad * rad));
-    P.diagonal() = information;
-    p = information.cwiseProduct(x);
-  }
+        squares(Eigen::VectorXd::Zero(nodes)) {}
 };
+
+Vector6d slackInformation(const PairModel& model) {
+  // A pose that is held has no variance: then nothing must move it.
+  const double m = std::max(model.slack_m, 1e-9), rad = std::max(model.slack_rad, 1e-9);
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(1 / (m * m)), Eigen::Vector3d::Constant(1 / (rad * rad));
+  return information;
+}
 
 /// The derivatives of a residual by the nodes (some twice) that it depends on.
 struct NodeRow {
@@ -117,10 +116,9 @@ double Judged::weight(const PairModel& model) const {
 }
 
 std::vector<Judged> residualsOf(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                                const DepthField& field, const Vector6d& x,
-                                const PairModel& model) {
+                                const DepthField& field, const PairModel& model) {
   std::vector<Judged> all;
-  forResiduals(pair, surfaces, field, x, model.patches,
+  forResiduals(pair, surfaces, field, model.patches,
                [&](const PairResidual& r, const Vector6d&) { all.push_back(judged(r)); });
   return all;
 }
@@ -135,45 +133,49 @@ FieldEquations& FieldEquations::operator+=(const FieldEquations& other) {
 }
 
 void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-             const DepthField& field, const Vector6d& x, const PairModel& model,
+             const DepthField& field, const Vector6d& c, const PairModel& model,
              FieldEquations& equations, PairStep& step) {
   const auto nodes = static_cast<Eigen::Index>(field.nodes().size());
   if (equations.H.size() == 0) {
     equations.H.setZero(nodes, nodes);
     equations.g.setZero(nodes);
   }
-  PairSums sums(nodes, x, model);
+  PairSums sums(nodes);
   step.g.setZero(nodes);
-  forResiduals(pair, surfaces, field, x, model.patches,
+  forResiduals(pair, surfaces, field, model.patches,
                [&](const PairResidual& r, const Vector6d& by_x) {
                  addResidual(r, by_x, judged(r).weight(model), sums, step.g);
                  ++equations.residuals;
                });
   equations.H += sums.half + sums.half.transpose();
   equations.H.diagonal() += sums.squares;
-  const Eigen::LDLT<Matrix6d> P(sums.P);
-  step.own = -P.solve(sums.p);
+  const Matrix6d W = slackInformation(model).asDiagonal();
+  const Eigen::LDLT<Matrix6d> P(sums.P + W);
+  step.own = -P.solve(sums.p - W * c);
   step.by_field = -P.solve(sums.C);
+  step.by_views = P.solve(W);
+  step.H_views = W - W * step.by_views;
+  step.g_views = W * (c - step.own);
+  step.H_views_field = -W * step.by_field;
   equations.H.noalias() += sums.C.transpose() * step.by_field;
   step.g.noalias() += sums.C.transpose() * step.own;
   equations.g += step.g;
 }
 
-Vector6d fittedPose(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                    const DepthField& field, const PairModel& model) {
+ViewPair fitted(ViewPair pair, const std::vector<ViewSurface>& surfaces, const DepthField& field,
+                const PairModel& model) {
   constexpr int kSteps = 3;
-  Vector6d x = Vector6d::Zero();
   for (int i = 0; i < kSteps; ++i) {
-    PairSums sums(0, x, model);
-    forResiduals(pair, surfaces, field, x, model.patches,
+    PairSums sums(0);
+    forResiduals(pair, surfaces, field, model.patches,
                  [&](const PairResidual& r, const Vector6d& by_x) {
                    const double weight = judged(r).weight(model);
                    sums.P.noalias() += weight * by_x * by_x.transpose();
                    sums.p += weight * r.e * by_x;
                  });
-    x -= sums.P.ldlt().solve(sums.p);
+    pair.T_to_from = expSe3(-sums.P.ldlt().solve(sums.p)) * pair.T_to_from;
   }
-  return x;
+  return pair;
 }
 
 }  // namespace pf

@@ -19,6 +19,9 @@ constexpr double kIndependent = 1.0 / 12.0;
 constexpr double kLeastFilled = 0.8;  // part of a window that has depth
 constexpr double kGrazing = 0.25;     // cosine between view and normal
 constexpr double kNearest_m = 0.4;    // below it structured light is not specified
+// Where the range of the sensor ends, of what is near its end only what is measured too near is
+// left.
+constexpr double kSigmasOfRange = 3.0;
 
 /// Sums of a least-squares plane over a symmetric window, about its middle.
 struct PlaneSums {
@@ -58,6 +61,12 @@ double inverseSigma(const DepthSensor& sensor, double w) {
   return sensor.sigma(static_cast<float>(1.0 / w)) * w * w;
 }
 
+bool isInRange(const DepthSensor& sensor, double w) {
+  const double z = 1.0 / w;
+  return w > 0 && z > kNearest_m &&
+         z + kSigmasOfRange * sensor.sigma(static_cast<float>(z)) < sensor.max_depth_m;
+}
+
 std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, int radius) {
   const cv::Mat& depth_mm = view.depth_mm;
   const PinholeCamera& camera = view.camera;
@@ -72,7 +81,7 @@ std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, 
   const double whole = (2.0 * radius + 1.0) * (2.0 * radius + 1.0);
   if (sums.n < kLeastFilled * whole) return std::nullopt;
   const auto fit = solve(sums);
-  if (!fit || !(fit->plane[0] > 0) || fit->plane[0] > 1.0 / kNearest_m) return std::nullopt;
+  if (!fit || !isInRange(view.sensor, fit->plane[0])) return std::nullopt;
   const double sigma = inverseSigma(view.sensor, fit->plane[0]);
   if (fit->variance > sigma * sigma) return std::nullopt;  // an edge, or no plane
   SurfacePatch patch;

@@ -91,11 +91,12 @@ void LoopWorker::addKeyframe(const KeyframeView& view) {
 void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   answer.depth_version = question.depth_version;
   if (!calibration_.learns() || !(question.keyframe || question.calibrates)) return;
-  const auto estimate =
-      question.calibrates ? std::optional<FieldEstimate>(learner_.estimate()) : learner_.learn();
+  const std::optional<DepthCalibration>& known = question.calibration;
+  const DepthField field = known ? known->field : DepthField();
+  const auto estimate = question.calibrates ? std::optional<FieldEstimate>(learner_.estimate(field))
+                                            : learner_.learn(field);
   if (!estimate) return;
-  answer.calibration_doubt =
-      question.is_corrected ? estimate->doubtOfStep(false) : estimate->reason;
+  answer.calibration_doubt = known ? estimate->doubtOfStep(known->pairs) : estimate->reason;
   if (!answer.calibration_doubt.empty()) return;
   answer.calibration = estimate->asCalibration();
 }

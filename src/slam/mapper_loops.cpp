@@ -80,7 +80,7 @@ void Mapper::State::tellCloser() {
   }
   if (std::exchange(keyframes_moved, false)) question->corrected = back_end.keyframePoses();
   question->depth_version = depth_version;
-  question->is_corrected = calibration.has_value();
+  question->calibration = calibration;
   question->calibrates = std::exchange(calibration_is_asked, false);
   if (std::exchange(constraints_are_old, false)) {
     question->remeasured = back_end.graph().constraints();

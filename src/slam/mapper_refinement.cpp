@@ -43,8 +43,11 @@ std::string Mapper::State::learnFromAll() {
   if (calibration && !config.calibration.learns()) return {};
   std::vector<CalibrationView> seen;
   for (const KeyframeView& view : views) seen.push_back(calibrationView(view, sensor));
-  const FieldEstimate estimate = estimateField(seen);
-  const bool is_off = (calibration ? estimate.doubtOfStep(true) : estimate.reason).empty();
+  FieldEstimateConfig how;
+  if (calibration) how.known = calibration->field;
+  const FieldEstimate estimate = estimateField(seen, how);
+  const bool is_off =
+      (calibration ? estimate.doubtOfStep(calibration->pairs) : estimate.reason).empty();
   if (is_off && config.calibration.learns()) {
     improve(estimate.asCalibration());
     return {};

@@ -87,7 +87,7 @@ DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate
     return calibration;
   }
   // Depth that was corrected already tells what that correction left.
-  const std::string doubt = estimate.doubtOfStep(true);
+  const std::string doubt = estimate.doubtOfStep(seen.corrected_by->pairs);
   if (doubt.empty()) {
     calibration.field = seen.corrected_by->field.then(estimate.field).centred();
     calibration.before_mm = seen.corrected_by->before_mm;
@@ -103,7 +103,9 @@ DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate
 int calibrate(const Options& options) {
   const CalibrationViews seen =
       isMap(options.input) ? readCalibrationViews(options.input) : viewsOfRecording(options);
-  const FieldEstimate estimate = estimateField(seen.views);
+  FieldEstimateConfig config;
+  if (seen.corrected_by) config.known = seen.corrected_by->field;
+  const FieldEstimate estimate = estimateField(seen.views, config);
   printEstimate(estimate);
   std::optional<DepthField> truth;
   if (!options.truth.empty()) truth = loadCalibration(options.truth + "/depth_field.yaml").field;

@@ -17,9 +17,12 @@ struct FieldEstimateConfig {
   int columns = DepthField::kColumns, rows = DepthField::kRows;
   double node_sigma_per_m = 0.005;    ///< what an uncalibrated camera has (1/m)
   double smooth_sigma_per_m = 0.001;  ///< by which neighbouring nodes differ (1/m)
-  int most_steps = 12;                ///< Gauss-Newton, until a step is a part of what is known
+  /// That the depth of the views is corrected by already: what any camera has, it has of both
+  /// together, so that an estimate that is repeated finds nothing more.
+  DepthField known{};
+  int most_steps = 12;  ///< Gauss-Newton, until a step is a part of what is known
   /// That are compared, of all views: the fewer the pairs, the more patches of each.
-  std::size_t most_patches = 600000;
+  std::size_t most_patches = 400000;
   std::size_t keep_out_every = 5;  ///< one pair in so many judges, and is not learned from
   PairModel model;
   PairLimits pairs;
@@ -48,10 +51,10 @@ struct FieldEstimate {
   /// More than three times what it is known to.
   bool standsOut() const;
 
-  /// Why it is not worth taking as a step of a field that is in use: that the camera is off is no
-  /// question any more, only whether pairs that were kept out agree better. `is_last`: no more
-  /// keyframes will come; then a field that stands out needs less of that. Empty: it is.
-  std::string doubtOfStep(bool is_last) const;
+  /// Why it is not worth taking as a step of a field that is in use and was learned from so many
+  /// pairs (0: otherwise). That the camera is off is no question any more: pairs that were kept out
+  /// agree better, or it comes from more pairs and they agree no worse. Empty: it is.
+  std::string doubtOfStep(std::size_t known_from_pairs) const;
 
   /// As one step of what is known of a camera, without its name and image.
   DepthCalibration asCalibration() const;

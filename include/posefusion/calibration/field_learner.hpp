@@ -21,11 +21,12 @@ class FieldLearner {
   /// are fewer than the last id wants.
   void setPoses(const std::vector<MapPose>& poses);
 
-  /// Nothing where it is not time yet. Seconds of work for a hundred keyframes.
-  std::optional<FieldEstimate> learn();
+  /// Nothing where it is not time yet. Seconds of work for a hundred keyframes. `known`: that their
+  /// depth is corrected by already.
+  std::optional<FieldEstimate> learn(const DepthField& known = {});
 
   /// The same whether it is time or not.
-  FieldEstimate estimate();
+  FieldEstimate estimate(const DepthField& known = {});
 
  private:
   std::vector<ViewSurface> surfaces_;

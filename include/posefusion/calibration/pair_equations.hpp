@@ -15,9 +15,9 @@ struct PairModel {
   /// as yet unknown field, finer structure than the grid, normals.
   double rest_per_m = 0.005;
   std::size_t patches = 1000;  ///< of each view are compared, spread over it
-  /// To so much (m, rad) the pose of a pair is held to the map's. Next to nothing: it was found
-  /// with depth that is off by the field, and would hold the field to its own error.
-  double pose_sigma_m = 0.3, pose_sigma_rad = 0.15;
+  /// By so much (m, rad) the pose that fits a pair may be off from where its two views are,
+  /// besides what the noise of its patches explains.
+  double slack_m = 0.0025, slack_rad = 0.00125;
   /// Residuals beyond so many standard deviations hardly count (Geman and McClure).
   double robust_scale = 2.0;
 
@@ -36,9 +36,9 @@ struct Judged {
   double weight(const PairModel& model) const;  ///< (1/m)^-2
 };
 
-/// All residuals of a pair, of the patches of both views, at a pose that is `x` (twist) off.
+/// All residuals of a pair, of the patches of both views, at its pose.
 std::vector<Judged> residualsOf(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                                const DepthField& field, const Vector6d& x, const PairModel& model);
+                                const DepthField& field, const PairModel& model);
 
 /// Normal equations of a Gauss-Newton step of the field, summed over pairs.
 struct FieldEquations {
@@ -49,23 +49,29 @@ struct FieldEquations {
   FieldEquations& operator+=(const FieldEquations& other);
 };
 
-/// What one pair has to say.
+/// What one pair has to say. Its pose is exp(x) T_to_from; its views, where they are, say
+/// exp(c + v) T_to_from, v being a step of theirs.
 struct PairStep {
-  /// How its pose follows from a step of the field: x += own + by_field * step.
+  /// How its pose follows from steps of the field and of its views:
+  /// x = own + by_field * step + by_views * v.
   Vector6d own = Vector6d::Zero();
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_field;
-  Eigen::VectorXd g;  ///< its part of FieldEquations::g
+  Matrix6d by_views = Matrix6d::Zero();
+  Eigen::VectorXd g;                    ///< its part of FieldEquations::g
+  Matrix6d H_views = Matrix6d::Zero();  ///< normal equations of v
+  Vector6d g_views = Vector6d::Zero();
+  Eigen::Matrix<double, 6, Eigen::Dynamic> H_views_field;
 };
 
-/// Adds a pair whose pose is `x` off to the equations of the field. The pose of the pair, normally
-/// distributed about the one given, is eliminated (Schur complement): what a wrong pose explains
-/// teaches the field nothing.
+/// Adds a pair to the equations of the field; `c` is how far its pose is from where its views are.
+/// The pose of the pair, normally distributed about that, is eliminated (Schur complement): what a
+/// wrong pose explains teaches the field nothing.
 void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-             const DepthField& field, const Vector6d& x, const PairModel& model,
+             const DepthField& field, const Vector6d& c, const PairModel& model,
              FieldEquations& equations, PairStep& step);
 
-/// The pose (twist x) that fits a pair best with the field as it is.
-Vector6d fittedPose(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
-                    const DepthField& field, const PairModel& model);
+/// The pair at the pose that fits it best with the field as it is, wherever its views are.
+ViewPair fitted(ViewPair pair, const std::vector<ViewSurface>& surfaces, const DepthField& field,
+                const PairModel& model);
 
 }  // namespace pf

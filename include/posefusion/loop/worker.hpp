@@ -40,7 +40,8 @@ struct LoopQuestion {
   std::shared_ptr<const PlaceQuestion> place;
   /// How often the depth of the keyframes has been corrected by what was learned.
   int depth_version = 0;
-  bool is_corrected = false;  ///< the depth of the keyframes is, by what is known of the camera
+  /// That the depth of the keyframes is corrected by; none: it is as measured.
+  std::optional<DepthCalibration> calibration{};
   /// Constraints between known keyframes that are to be measured anew, as their depth has changed.
   std::vector<PoseConstraint> remeasured{};
   bool calibrates = false;  ///< asked for: the camera's field is estimated now
