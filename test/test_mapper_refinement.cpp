@@ -74,6 +74,7 @@ TEST_F(MapperRefinementTest, DriftIsMendedByPairsThatSeeTheSame) {
   EXPECT_GT(done.largest_shift_m, 0.02);
   EXPECT_GT(done.measured, mapper.backEnd().graph().keyframes().size()) << "not only neighbours";
   EXPECT_LE(done.measured, done.pairs);
+  EXPECT_EQ(done.text().rfind("refined: " + std::to_string(done.pairs), 0), 0U) << done.text();
 }
 
 TEST_F(MapperRefinementTest, OfACameraThatIsNotKnownNothingIsAligned) {
@@ -85,6 +86,7 @@ TEST_F(MapperRefinementTest, OfACameraThatIsNotKnownNothingIsAligned) {
   const Mapper::Refinement done = mapper.refine();
   EXPECT_NE(done.reason.find("pairs saw the same surface, expected 50"), std::string::npos)
       << done.reason;
+  EXPECT_EQ(done.text(), "not refined: " + done.reason);
   EXPECT_EQ(done.pairs, 0U);
   EXPECT_EQ(error_m(mapper), before_m);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When all frames are in: every pair of keyframes that see the same surface has its say.
+#include <cstdio>
+
 #include "mapper_state.hpp"
 #include "posefusion/calibration/field_estimate.hpp"
 #include "posefusion/loop/dense_pairs.hpp"
@@ -55,6 +57,16 @@ std::string Mapper::State::learnFromAll() {
   if (is_off) return "depth is off by a field that it is not corrected by (calibration.mode)";
   const bool is_known = calibration || estimate.kept_out.pairs > 0;
   return is_known ? std::string() : "what depth is off by is not known: " + estimate.reason;
+}
+
+std::string Mapper::Refinement::text() const {
+  if (!reason.empty()) return "not refined: " + reason;
+  char line[128];
+  std::snprintf(line, sizeof line,
+                "refined: %zu pairs of keyframes compared, %zu agree; keyframes moved by up to "
+                "%.1f mm",
+                pairs, measured, 1000.0 * largest_shift_m);
+  return line;
 }
 
 Mapper::Refinement Mapper::refine() {

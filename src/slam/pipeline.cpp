@@ -15,9 +15,10 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
       mapper_(config),
       loop_thread_(config, AnswerTime::after_lag) {}
 
-void Pipeline::finish() {
+std::string Pipeline::finish() {
   loop_thread_.finish(mapper_);
-  if (config_.loop.enabled && config_.loop.refine_at_end) mapper_.refine();
+  if (!config_.loop.enabled || !config_.loop.refine_at_end) return {};
+  return mapper_.refine().text();
 }
 
 SeenFrame Pipeline::see(const RgbdFrame& frame) {

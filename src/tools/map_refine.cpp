@@ -49,8 +49,7 @@ void refineMap(const std::string& file, const std::string& output) {
   const Mapper::Refinement done = mapper.refine();
   if (!done.reason.empty()) throw InputError(file + ": nothing to refine: " + done.reason);
   write(mapper, camera, config, output);
-  std::printf("%s: %zu pairs of keyframes compared, %zu agree; keyframes moved by up to %.1f mm\n",
-              output.c_str(), done.pairs, done.measured, 1000.0 * done.largest_shift_m);
+  std::printf("%s: %s\n", output.c_str(), done.text().c_str());
 }
 
 }  // namespace pf

@@ -107,7 +107,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   } catch (...) {
     failure = std::current_exception();
   }
-  pipeline.finish();
+  say(pipeline.finish());
   sayLeftOut(source.report(), progress);
   return failure;
 }

@@ -44,7 +44,7 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
            "place is known; 0: never");
   v.flag("refine_at_end", c.refine_at_end,
          "after the last frame, offline and in lossless replay, all keyframes that see the same "
-         "surface are aligned with each other");
+         "surface are aligned with each other, where depth is corrected or known to be right");
 }
 
 }  // namespace pf

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/core/frame.hpp"
@@ -77,6 +78,8 @@ class Mapper {
     std::size_t pairs = 0, measured = 0;  ///< of keyframes: compared, and found to agree
     double largest_shift_m = 0;           ///< of a keyframe; 0: nothing has moved
     std::string reason;                   ///< why none was compared; empty: they were
+
+    std::string text() const;  ///< what was done, or why nothing, in a line
   };
 
   /// The best that the pictures of the keyframes allow: what they tell all together of the depth

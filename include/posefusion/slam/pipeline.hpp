@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,8 +59,8 @@ class Pipeline {
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
   /// After the last frame: takes in what the loop closer still has to say, and refines the map
-  /// where the settings want it.
-  void finish();
+  /// where the settings want it. Returns what that did, or why nothing, in a line.
+  std::string finish();
 
   const LoopCounts& loopCounts() const { return loop_thread_.counts(); }
 
