@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posefusion/core/parallel.hpp"
 #include "posefusion/calibration/view_poses.hpp"
+#include "posefusion/core/parallel.hpp"
 
 namespace pf {
 namespace {
