@@ -73,16 +73,15 @@ double sigmaOf(const DepthField& field, const Eigen::MatrixXd& covariance) {
 
 std::string doubtOf(const FieldEstimate& estimate) {
   if (estimate.kept_out.significance <= kSignificant) return kNoBetter;
-  if (estimate.standsOut()) return {};
+  const double rms = estimate.field.rms();
+  if (rms > estimate.left_per_m()) return {};
   std::ostringstream text;
-  text << "the error found, " << estimate.field.rms() << " 1/m, is less than " << kSigmas
+  text << "the error found, " << rms << " 1/m, is less than " << kSigmas
        << " times what it is known to, " << estimate.sigma_per_m;
   return text.str();
 }
 
 }  // namespace
-
-bool FieldEstimate::standsOut() const { return field.rms() > left_per_m(); }
 
 std::string FieldEstimate::doubtOfStep(std::size_t known_from_pairs) const {
   if (kept_out.pairs == 0) return reason;

@@ -48,9 +48,6 @@ struct FieldEstimate {
   bool worth_taking = false;  ///< by a camera of which nothing was known
   std::string reason;         ///< why it is not worth taking, or why there is no estimate
 
-  /// More than three times what it is known to.
-  bool standsOut() const;
-
   /// Why it is not worth taking as a step of a field that is in use and was learned from so many
   /// pairs (0: otherwise). That the camera is off is no question any more: pairs that were kept out
   /// agree better, or it comes from more pairs and they agree no worse. Empty: it is.
