@@ -70,6 +70,13 @@ TEST(FieldEstimate, repeatedItFindsNothingMore) {
   EXPECT_NE(again.doubtOfStep(again.pairs), "");
 }
 
+TEST(FieldEstimate, whatIsKnownMayHaveAnotherGrid) {
+  FieldEstimateConfig config;
+  config.known = DepthField(16, 12);  // nothing, as by default
+  const FieldEstimate estimate = estimateField(distortedViews(), config);
+  EXPECT_LT(compare(estimate.field, distortedEstimate().field).rms_difference, 1e-9);
+}
+
 TEST(FieldEstimate, aStepIsTakenFromMorePairsThatAgreeNoWorse) {
   FieldEstimate step;
   step.pairs = 130;
