@@ -92,6 +92,10 @@ std::string FieldEstimate::doubtOfStep(std::size_t known_from_pairs) const {
   return kNoBetter;
 }
 
+std::string FieldEstimate::doubtBeside(const std::optional<DepthCalibration>& known) const {
+  return known ? doubtOfStep(known->pairs) : reason;
+}
+
 DepthCalibration FieldEstimate::asCalibration() const {
   DepthCalibration step;
   step.field = field;

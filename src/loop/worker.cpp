@@ -96,7 +96,7 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   const auto estimate = question.calibrates ? std::optional<FieldEstimate>(learner_.estimate(field))
                                             : learner_.learn(field);
   if (!estimate) return;
-  answer.calibration_doubt = known ? estimate->doubtOfStep(known->pairs) : estimate->reason;
+  answer.calibration_doubt = estimate->doubtBeside(known);
   if (!answer.calibration_doubt.empty()) return;
   answer.calibration = estimate->asCalibration();
 }

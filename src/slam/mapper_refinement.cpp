@@ -48,8 +48,7 @@ std::string Mapper::State::learnFromAll() {
   FieldEstimateConfig how;
   if (calibration) how.known = calibration->field;
   const FieldEstimate estimate = estimateField(seen, how);
-  const bool is_off =
-      (calibration ? estimate.doubtOfStep(calibration->pairs) : estimate.reason).empty();
+  const bool is_off = estimate.doubtBeside(calibration).empty();
   if (is_off && config.calibration.learns()) {
     improve(estimate.asCalibration());
     return {};

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct FieldEstimate {
   /// pairs (0: otherwise). That the camera is off is no question any more: pairs that were kept out
   /// agree better, or it comes from more pairs and they agree no worse. Empty: it is.
   std::string doubtOfStep(std::size_t known_from_pairs) const;
+
+  /// Why it is not worth taking by a camera of which that is known (nothing: `reason`).
+  std::string doubtBeside(const std::optional<DepthCalibration>& known) const;
 
   /// As one step of what is known of a camera, without its name and image.
   DepthCalibration asCalibration() const;
