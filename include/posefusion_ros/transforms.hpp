@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
@@ -54,6 +55,10 @@ class TransformLookup {
  private:
   std::optional<Eigen::Isometry3d> look(const std::string& target, const std::string& source,
                                         const ros::Time& stamp, std::string& note) const;
+  std::optional<geometry_msgs::TransformStamped> at(const std::string& target,
+                                                    const std::string& source,
+                                                    const ros::Time& stamp,
+                                                    std::string& note) const;
 
   const tf2::BufferCore& buffer_;
   LookupSettings settings_;

@@ -58,23 +58,32 @@ std::optional<Eigen::Isometry3d> TransformLookup::look(const std::string& target
                                                        const ros::Time& stamp,
                                                        std::string& note) const {
   note.clear();
+  // Before that of the stamp: asked for after it, one that came between the two would be called
+  // older than the image.
+  const auto newest = settings_.exact ? std::nullopt : at(target, source, ros::Time(0), note);
+  const auto T = at(target, source, stamp, note);
+  if (T) return tf2::transformToEigen(*T);
+  if (!newest) return std::nullopt;
+  const double age_s = (stamp - newest->header.stamp).toSec();
+  if (std::abs(age_s) > settings_.max_age_s) return std::nullopt;
+  std::ostringstream text;
+  text << "the transform from " << source << " to " << target << " is " << std::fixed
+       << std::setprecision(3) << age_s << " s older than the image";
+  note = text.str();
+  return tf2::transformToEigen(*newest);
+}
+
+std::optional<geometry_msgs::TransformStamped> TransformLookup::at(const std::string& target,
+                                                                   const std::string& source,
+                                                                   const ros::Time& stamp,
+                                                                   std::string& note) const {
   try {
-    return tf2::transformToEigen(buffer_.lookupTransform(target, source, stamp));
+    auto T = buffer_.lookupTransform(target, source, stamp);
+    note.clear();
+    return T;
   } catch (const tf2::TransformException& exception) {
     note = "no transform from " + source + " to " + target + ": " + exception.what();
-  }
-  if (settings_.exact) return std::nullopt;
-  try {
-    const auto newest = buffer_.lookupTransform(target, source, ros::Time(0));
-    const double age_s = (stamp - newest.header.stamp).toSec();
-    if (std::abs(age_s) > settings_.max_age_s) return std::nullopt;
-    std::ostringstream text;
-    text << "the transform from " << source << " to " << target << " is " << std::fixed
-         << std::setprecision(3) << age_s << " s older than the image";
-    note = text.str();
-    return tf2::transformToEigen(newest);
-  } catch (const tf2::TransformException&) {
-    return std::nullopt;  // the note says why
+    return std::nullopt;
   }
 }
 

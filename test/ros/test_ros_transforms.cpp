@@ -5,6 +5,7 @@
 #include <tf2_eigen/tf2_eigen.h>
 
 #include <Eigen/Cholesky>
+#include <atomic>
 #include <random>
 #include <thread>
 
@@ -81,6 +82,25 @@ TEST_F(TransformLookupTest, TheFirstIsWaitedFor) {
     EXPECT_EQ(note, "");
     sender.join();
   }
+}
+
+/// As above, but it comes while the lookup looks: never the newest instead of that of the stamp.
+TEST_F(TransformLookupTest, OneThatComesMeanwhileIsNoOldOne) {
+  constexpr int kRounds = 2000;
+  std::atomic<int> asked{0};
+  std::thread sender([&] {
+    for (int i = 1; i <= kRounds; ++i) {
+      while (asked < i) std::this_thread::yield();
+      hear(i);
+    }
+  });
+  for (int i = 1; i <= kRounds; ++i) {
+    TransformLookup lookup(buffer, {30.0, 0.2, false});
+    asked = i;
+    EXPECT_NEAR(find(lookup, i).value_or(0), i, 1e-9) << note;
+    EXPECT_EQ(note, "");
+  }
+  sender.join();
 }
 
 TEST_F(TransformLookupTest, ExactMeansThatOfTheStamp) {
