@@ -132,5 +132,59 @@ TEST_F(LandmarksTest, HoldAMotionThatDriftsFromFrameToFrame) {
   EXPECT_LT(drift_held, 0.5 * drift_alone);
 }
 
+/// A floor 1.2 m below a level camera, as it is measured, in pictures of any size.
+class CornerDepthTest : public ::testing::TestWithParam<int> {
+ protected:
+  CornerDepthTest() : depth_m_(camera_.height, camera_.width, CV_32FC1, cv::Scalar(0)) {
+    for (int v = horizon(); v < camera_.height; ++v) {
+      for (int u = 0; u < camera_.width; ++u) depth_m_.at<float>(v, u) = measured(floorAt(v));
+    }
+  }
+
+  int horizon() const { return static_cast<int>(camera_.cy) + 1; }
+  double floorAt(int v) const { return 1.2 * camera_.fy / (v - camera_.cy); }
+  float measured(double z) {
+    std::normal_distribution<double> noise(0.0, sensor_.sigma(static_cast<float>(z)));
+    return z < 4.5 ? static_cast<float>(z + noise(random_)) : 0.0F;
+  }
+  int rowOf(double z) const { return static_cast<int>(camera_.cy + 1.2 * camera_.fy / z); }
+  CornerDepth around(int u, int v) const {
+    return depthAround(depth_m_, sensor_, {static_cast<float>(u), static_cast<float>(v)});
+  }
+
+  std::mt19937 random_{7};
+  DepthSensor sensor_;
+  PinholeCamera camera_ = vga().shrunk(640 / GetParam());
+  cv::Mat depth_m_;
+};
+
+TEST_P(CornerDepthTest, IsThatOfTheFloorHoweverFlatItIsSeen) {
+  for (const double z : {2.8, 3.4, 4.0}) {
+    const int v = rowOf(z);
+    for (int u = 10; u < camera_.width - 10; u += camera_.width / 20) {
+      const CornerDepth found = around(u, v);
+      EXPECT_FALSE(found.is_edge) << z;
+      EXPECT_NEAR(found.z_m, floorAt(v), 1.5 * sensor_.sigma(static_cast<float>(z))) << z;
+    }
+  }
+}
+
+TEST_P(CornerDepthTest, IsNoneOnTheRimOfSomethingNearer) {
+  const int u = camera_.width / 2, v = rowOf(3.0);
+  depth_m_.colRange(0, u).setTo(2.0F);
+  EXPECT_TRUE(around(u, v).is_edge);
+  EXPECT_EQ(around(u, v).z_m, 0);
+}
+
+TEST_P(CornerDepthTest, IsNoneWithoutDepthAndIsNotExtrapolated) {
+  const int u = camera_.width / 2, v = rowOf(3.0);
+  EXPECT_EQ(around(u, 3).z_m, 0);
+  EXPECT_FALSE(around(u, 3).is_edge) << "nothing there is no rim";
+  depth_m_.colRange(u - 1, camera_.width).setTo(0.0F);  // one column is left of the surroundings
+  EXPECT_EQ(around(u, v).z_m, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, CornerDepthTest, testing::Values(320, 640));
+
 }  // namespace
 }  // namespace pf

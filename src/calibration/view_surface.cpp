@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "posefusion/core/inverse_plane.hpp"
+
 namespace pf {
 namespace {
 
@@ -18,43 +20,13 @@ constexpr double kRadiusSteps = 0.75;
 constexpr double kIndependent = 1.0 / 12.0;
 constexpr double kLeastFilled = 0.8;  // part of a window that has depth
 constexpr double kGrazing = 0.25;     // cosine between view and normal
-constexpr double kNearest_m = 0.4;    // below it structured light is not specified
+// What a plane leaves of a window, in variances of the noise. Of depth as measured it is one on
+// average, more in half of all windows; an edge leaves many.
+constexpr double kMostOfPlane = 3.0;
+constexpr double kNearest_m = 0.4;  // below it structured light is not specified
 // Where the range of the sensor ends, of what is near its end only what is measured too near is
 // left.
 constexpr double kSigmasOfRange = 3.0;
-
-/// Sums of a least-squares plane over a symmetric window, about its middle.
-struct PlaneSums {
-  double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, w = 0, wu = 0, wv = 0, ww = 0;
-
-  void add(double du, double dv, double inverse) {
-    n += 1;
-    u += du;
-    v += dv;
-    uu += du * du;
-    uv += du * dv;
-    vv += dv * dv;
-    w += inverse;
-    wu += inverse * du;
-    wv += inverse * dv;
-    ww += inverse * inverse;
-  }
-};
-
-struct PlaneFit {
-  Eigen::Vector3d plane;  ///< w, by_u, by_v
-  double variance;        ///< of what is left
-};
-
-std::optional<PlaneFit> solve(const PlaneSums& s) {
-  Eigen::Matrix3d A;
-  A << s.n, s.u, s.v, s.u, s.uu, s.uv, s.v, s.uv, s.vv;
-  const Eigen::Vector3d b(s.w, s.wu, s.wv);
-  const double determinant = A.determinant();
-  if (!(determinant > 1e-9 * s.n * s.n * s.n)) return std::nullopt;
-  const Eigen::Vector3d plane = A.inverse() * b;
-  return PlaneFit{plane, std::max(0.0, (s.ww - plane.dot(b)) / s.n)};
-}
 
 /// Standard deviation (1/m) of inverse depth of one measurement.
 double inverseSigma(const DepthSensor& sensor, double w) {
@@ -71,7 +43,7 @@ std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, 
   const cv::Mat& depth_mm = view.depth_mm;
   const PinholeCamera& camera = view.camera;
   if (depth_mm.at<std::uint16_t>(v, u) == 0) return std::nullopt;
-  PlaneSums sums;
+  InversePlaneSums sums;
   for (int dv = -radius; dv <= radius; ++dv) {
     const auto* row = depth_mm.ptr<std::uint16_t>(v + dv) + u;
     for (int du = -radius; du <= radius; ++du) {
@@ -79,18 +51,18 @@ std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, 
     }
   }
   const double whole = (2.0 * radius + 1.0) * (2.0 * radius + 1.0);
-  if (sums.n < kLeastFilled * whole) return std::nullopt;
-  const auto fit = solve(sums);
-  if (!fit || !isInRange(view.sensor, fit->plane[0])) return std::nullopt;
-  const double sigma = inverseSigma(view.sensor, fit->plane[0]);
-  if (fit->variance > sigma * sigma) return std::nullopt;  // an edge, or no plane
+  if (sums.count() < kLeastFilled * whole) return std::nullopt;
+  const auto fit = sums.fit();
+  if (!fit || !isInRange(view.sensor, fit->w)) return std::nullopt;
+  const double sigma = inverseSigma(view.sensor, fit->w);
+  if (fit->variance > kMostOfPlane * sigma * sigma) return std::nullopt;
   SurfacePatch patch;
   patch.u = static_cast<float>(u);
   patch.v = static_cast<float>(v);
-  patch.w = static_cast<float>(fit->plane[0]);
-  patch.by_u = static_cast<float>(fit->plane[1]);
-  patch.by_v = static_cast<float>(fit->plane[2]);
-  patch.sigma = static_cast<float>(sigma / std::sqrt(std::max(1.0, sums.n * kIndependent)));
+  patch.w = static_cast<float>(fit->w);
+  patch.by_u = static_cast<float>(fit->by_u);
+  patch.by_v = static_cast<float>(fit->by_v);
+  patch.sigma = static_cast<float>(sigma / std::sqrt(std::max(1.0, sums.count() * kIndependent)));
   const Eigen::Vector3d ray = camera.unproject(u, v, 1.0);
   if (-normalOf(patch, camera).dot(ray) < kGrazing * ray.norm()) return std::nullopt;
   return patch;

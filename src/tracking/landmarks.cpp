@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posefusion/core/inverse_plane.hpp"
+
 namespace pf {
 namespace {
 
-// Depth around a corner is the mean of what lies so many cornerPixel() around it, of which this
-// share must be there.
+// Depth around a corner is that of the plane through what lies so many cornerPixel() around it. It
+// must be as sure as from this share of the depths there.
 constexpr double kReach = 2.0, kMinDepths = 0.12;
+// What a plane leaves of its depths is by chance up to so many standard deviations of the noise,
+// and as much again (m) as surfaces are rough; a rim leaves a quarter of what it stands out by.
+constexpr double kLeftOfPlane = 1.5, kRough_m = 0.0025;
 // A corner that is elsewhere by more than this (cornerPixel()) in some frames (at 30 Hz) moves by
 // itself.
 constexpr double kMissed = 3.0;
@@ -29,27 +34,27 @@ bool agrees(const Eigen::Vector3d& expected, const cv::Point2f& pixel, double z,
 
 }  // namespace
 
-double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel) {
+CornerDepth depthAround(const cv::Mat& depth_m, const DepthSensor& sensor,
+                        const cv::Point2f& pixel) {
   const int u = static_cast<int>(std::lround(pixel.x)), v = static_cast<int>(std::lround(pixel.y));
   const int reach = static_cast<int>(std::lround(kReach * cornerPixel(depth_m.cols)));
-  const int first_u = std::max(0, u - reach), last_u = std::min(depth_m.cols - 1, u + reach);
-  const int first_v = std::max(0, v - reach), last_v = std::min(depth_m.rows - 1, v + reach);
-  float least = 1e9F, most = 0.0F, sum = 0.0F;
-  int count = 0;
-  for (int row = first_v; row <= last_v; ++row) {
+  const cv::Rect patch = cv::Rect(u - reach, v - reach, 2 * reach + 1, 2 * reach + 1);
+  const cv::Rect seen = patch & cv::Rect({}, depth_m.size());
+  InversePlaneSums sums;
+  for (int row = seen.y; row < seen.y + seen.height; ++row) {
     const float* depth = depth_m.ptr<float>(row);
-    for (int col = first_u; col <= last_u; ++col) {
-      const float z = depth[col];
-      if (z <= 0.0F) continue;
-      least = std::min(least, z);
-      most = std::max(most, z);
-      sum += 1.0F / z;
-      ++count;
+    for (int col = seen.x; col < seen.x + seen.width; ++col) {
+      if (depth[col] > 0) sums.add(col - u, row - v, 1.0 / depth[col]);
     }
   }
-  const int side = 2 * reach + 1;
-  if (count < kMinDepths * side * side || most - least > sensor.tolerance(least, 4.0F)) return 0.0;
-  return static_cast<double>(static_cast<float>(count) / sum);
+  const auto plane = sums.fit();
+  if (!plane || plane->support < kMinDepths * patch.area()) return {};
+  if (plane->w <= 0) return {0, true};
+  const double z = 1.0 / plane->w;
+  const double left_m = std::sqrt(plane->variance) * z * z;
+  const double noise_m = sensor.sigma(static_cast<float>(z));
+  const bool is_plane = left_m < kLeftOfPlane * noise_m + kRough_m;
+  return is_plane ? CornerDepth{z, false} : CornerDepth{0, true};
 }
 
 bool Landmark::isBelieved() const { return misses < kMostMisses; }
@@ -67,7 +72,7 @@ void Landmarks::update(const SparseFlow& flow, const DepthPicture& seen,
   next_.clear();
   for (std::size_t i = 0; i < flow.ids.size(); ++i) {
     const cv::Point2f& pixel = flow.after[i];
-    const double z = smoothDepthAt(seen.depth_m, seen.sensor, pixel);
+    const double z = depthAround(seen.depth_m, seen.sensor, pixel).z_m;
     const Landmark* known = find(flow.ids[i]);
     if (known == nullptr && z <= 0) continue;
     Landmark landmark = known != nullptr ? *known : Landmark{flow.ids[i]};

@@ -69,13 +69,15 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
     const Landmark* known = landmarks == nullptr ? nullptr : landmarks->find(flow.ids[i]);
     if (known != nullptr && !known->isBelieved()) continue;
     if (known == nullptr && scene.before_m.empty()) continue;
-    const double z = scene.before_m.empty() ? 0.0 : smoothDepthAt(scene.before_m, scene.sensor, a);
+    const CornerDepth around =
+        scene.before_m.empty() ? CornerDepth{} : depthAround(scene.before_m, scene.sensor, a);
+    const double z = around.z_m;
     if (z > 0 && isBeforeMap(scene, camera, a, z)) continue;
     Sight sight{camera.unproject(a.x, a.y, z > 0 ? z : far_m), {b.x, b.y}};
     if (known != nullptr) sight.before = T_before_map * known->at;
     sight.is_far = known == nullptr && z <= 0;
-    if (sight.is_far && !surroundings.areOpen(a)) continue;
-    if (!sight.is_far) sight.after_m = smoothDepthAt(scene.after_m, scene.sensor, b);
+    if (sight.is_far && (around.is_edge || !surroundings.areOpen(a))) continue;
+    if (!sight.is_far) sight.after_m = depthAround(scene.after_m, scene.sensor, b).z_m;
     sight.after_sigma_m = scene.sensor.sigma(static_cast<float>(sight.after_m));
     sights.push_back(sight);
   }

@@ -21,9 +21,16 @@ struct DepthPicture {
   Pace pace{};
 };
 
-/// Depth (m) around a pixel where its surroundings lie on one surface, else 0. Some holes are
-/// allowed: dark and bright things return little. `depth_m`: CV_32FC1, 0 = invalid.
-double smoothDepthAt(const cv::Mat& depth_m, const DepthSensor& sensor, const cv::Point2f& pixel);
+/// What lies around a corner.
+struct CornerDepth {
+  double z_m = 0;        ///< of the surface, at the corner; 0: no depth, or not on one surface
+  bool is_edge = false;  ///< there is depth, but of more than one surface
+};
+
+/// The surface around a pixel, which may be inclined. Some holes are allowed: dark and bright
+/// things return little. `depth_m`: CV_32FC1, 0 = invalid.
+CornerDepth depthAround(const cv::Mat& depth_m, const DepthSensor& sensor,
+                        const cv::Point2f& pixel);
 
 /// A corner of the world in space, for as long as it is followed.
 struct Landmark {
