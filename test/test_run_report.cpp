@@ -68,11 +68,14 @@ TEST(RunStatistics, MedianAndTailOfAStage) {
   const auto stages = statistics.stages();
   EXPECT_EQ(stages.at("tracking").median_ms, 50);
   EXPECT_EQ(stages.at("tracking").p95_ms, 95);
+  EXPECT_EQ(stages.at("tracking").p99_ms, 99);
+  EXPECT_EQ(stages.at("tracking").p999_ms, 100);
+  EXPECT_EQ(stages.at("tracking").most_ms, 100);
   EXPECT_EQ(stages.at("tracking_and_fusion").median_ms, 51);
   EXPECT_EQ(stages.count("pose"), 0U) << "the detector looked at no frame";
 }
 
-TEST(RunStatistics, MinutesOfTheRecordingHaveTheirMedians) {
+TEST(RunStatistics, MinutesOfTheRecordingHaveTheirTimesAndLoopsCount) {
   RunStatistics statistics;
   for (int i = 0; i < 600; ++i) {  // a tenth of a second apart; nothing in the second minute
     ProcessedFrame frame = frameAt(i, FrameOutcome::fused);
@@ -80,9 +83,15 @@ TEST(RunStatistics, MinutesOfTheRecordingHaveTheirMedians) {
     if (i >= 300) frame.status.stamp_ns += 120'000 * kMs;
     frame.seen.gate_ms = i >= 300 ? 2 : 1;
     frame.segmentation_ms = 4;
+    if (i >= 300) frame.loop_ms = i % 30 == 0 ? 500 : 3;
     statistics.add(frame);
   }
-  EXPECT_EQ(statistics.minutes(), (std::vector<double>{16, 0, 17}));
+  const std::vector<StageTime> minutes = statistics.minutes();
+  ASSERT_EQ(minutes.size(), 3U);
+  EXPECT_EQ(minutes[0].median_ms, 16);
+  EXPECT_EQ(minutes[1].median_ms, 0);
+  EXPECT_EQ(minutes[2].median_ms, 20);
+  EXPECT_EQ(minutes[2].p99_ms, 517) << "a correction that holds up few frames is told";
 }
 
 TEST(RunStatistics, LoopsTakeTimeInTheChainAndBesideIt) {

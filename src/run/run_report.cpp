@@ -71,6 +71,14 @@ std::string fixed(double value, int decimals) {
   return out.str();
 }
 
+nlohmann::ordered_json timesJson(const StageTime& time) {
+  return {{"median_ms", time.median_ms},
+          {"p95_ms", time.p95_ms},
+          {"p99_ms", time.p99_ms},
+          {"p999_ms", time.p999_ms},
+          {"most_ms", time.most_ms}};
+}
+
 }  // namespace
 
 void RunReport::add(const ProcessedFrame& frame) {
@@ -149,9 +157,10 @@ std::string RunReport::summary(std::size_t surfels) const {
   }
   if (depth_difference_m_) out["depth_median_difference_m"] = *depth_difference_m_;
   for (const auto& [name, time] : statistics_.stages()) {
-    out["stages"][name] = {{"median_ms", time.median_ms}, {"p95_ms", time.p95_ms}};
+    out["stages"][name] = timesJson(time);
   }
-  out["median_ms_by_minute"] = statistics_.minutes();
+  out["by_minute"] = nlohmann::ordered_json::array();
+  for (const StageTime& time : statistics_.minutes()) out["by_minute"].push_back(timesJson(time));
   out["configuration"] = configurationJson(config_);
   return out.dump(2) + "\n";
 }
@@ -212,7 +221,7 @@ std::string RunReport::table() const {
   for (const auto& [name, time] : statistics_.stages()) {
     out << "         " << std::left << std::setw(20) << name << std::right << std::setw(7)
         << fixed(time.median_ms, 1) << " ms median" << std::setw(7) << fixed(time.p95_ms, 1)
-        << " ms 95 %\n";
+        << " ms 95 %" << std::setw(8) << fixed(time.most_ms, 1) << " ms most\n";
   }
   if (loops_.keyframes > 0) {
     out << "loops    " << loops_.keyframes << " keyframes, " << loops_.accepted << " loops, "

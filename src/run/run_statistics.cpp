@@ -14,7 +14,8 @@ constexpr std::int64_t kMinute_ns = 60'000'000'000;
 StageTime summarise(std::vector<double> times) {
   if (times.empty()) return {};
   std::sort(times.begin(), times.end());
-  return {times[times.size() / 2], times[times.size() * 95 / 100]};
+  const auto at = [&](std::size_t thousandths) { return times[times.size() * thousandths / 1000]; };
+  return {at(500), at(950), at(990), at(999), times.back()};
 }
 
 double shareOf(std::size_t part, std::size_t whole) {
@@ -80,7 +81,8 @@ void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("loop_closing", frame.loop_ms);
   if (!first_stamp_ns_) first_stamp_ns_ = frame.status.stamp_ns;
   const double whole = frame.seen.gate_ms + frame.seen.pose_ms + frame.segmentation_ms +
-                       frame.status.tracking_ms + frame.status.fusion_ms;
+                       frame.status.tracking_ms + frame.status.fusion_ms +
+                       (std::isnan(frame.loop_ms) ? 0.0 : frame.loop_ms);
   if (!std::isnan(whole)) {
     minutes_ms_[(frame.status.stamp_ns - *first_stamp_ns_) / kMinute_ns].push_back(whole);
   }
@@ -102,13 +104,13 @@ std::map<std::string, StageTime> RunStatistics::stages() const {
   return stages;
 }
 
-std::vector<double> RunStatistics::minutes() const {
-  std::vector<double> medians;
+std::vector<StageTime> RunStatistics::minutes() const {
+  std::vector<StageTime> found;
   for (const auto& [minute, times] : minutes_ms_) {
-    medians.resize(static_cast<std::size_t>(std::max<std::int64_t>(0, minute)) + 1);
-    medians.back() = summarise(times).median_ms;
+    found.resize(static_cast<std::size_t>(std::max<std::int64_t>(0, minute)) + 1);
+    found.back() = summarise(times);
   }
-  return medians;
+  return found;
 }
 
 double peakMemoryMb() {

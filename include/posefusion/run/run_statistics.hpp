@@ -38,6 +38,8 @@ struct MaskCounts {
 struct StageTime {
   double median_ms = 0;
   double p95_ms = 0;
+  double p99_ms = 0, p999_ms = 0;  ///< of the frames, 99 and 99.9 % take no longer
+  double most_ms = 0;
 };
 
 /// Counts and times of a run, frame by frame.
@@ -60,8 +62,9 @@ class RunStatistics {
   /// addTime() was told.
   std::map<std::string, StageTime> stages() const;
 
-  /// Median time (ms) that the chain took for a frame, in each minute of the recording.
-  std::vector<double> minutes() const;
+  /// Times that the chain took for a frame, with what loops kept it waiting, in each minute of the
+  /// recording.
+  std::vector<StageTime> minutes() const;
 
  private:
   void addMask(const ProcessedFrame& frame);
