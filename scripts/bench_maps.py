@@ -33,7 +33,7 @@ class Maps(Runs):
 
     def closer_times(self, name, summary):
         times = summary["stages"]
-        self.row(f"{name}, what loops keep a frame waiting, 99.9 %", times["loop_closing"]["p999_ms"], "ms", 2)
+        self.row(f"{name}, loops on the tracking thread, 99.9 %", times["loop_closing"]["p999_ms"], "ms", 2)
         self.row(f"{name}, the same, most", times["loop_closing"]["most_ms"], "ms", digits=1)
         self.row(f"{name}, verification of a keyframe beside it, median",
                  times["loop_verification"]["median_ms"], "ms", 100, digits=1)

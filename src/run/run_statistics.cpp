@@ -79,6 +79,7 @@ void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("fusion", frame.status.fusion_ms);
   addTime("tracking_and_fusion", frame.status.tracking_ms + frame.status.fusion_ms);
   addTime("loop_closing", frame.loop_ms);
+  addTime("loop_waiting", frame.loop_wait_ms);
   if (!first_stamp_ns_) first_stamp_ns_ = frame.status.stamp_ns;
   const double whole = frame.seen.gate_ms + frame.seen.pose_ms + frame.segmentation_ms +
                        frame.status.tracking_ms + frame.status.fusion_ms +

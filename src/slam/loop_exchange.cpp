@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "posefusion/core/stopwatch.hpp"
 #include "posefusion/slam/mapper.hpp"
 
 namespace pf {
@@ -41,8 +42,10 @@ void LoopExchange::takeOne(Mapper& mapper) {
   LoopAnswer nothing;
   nothing.asked_for_place = asked.for_place;
   std::optional<LoopAnswer> answer;
+  Stopwatch watch;
   try {
     answer = responder_->take();
+    waited_ms_ += watch.lapMs();
   } catch (...) {
     ++unanswered_;
     mapper.take(nothing);

@@ -60,8 +60,10 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   still.input_depth = frame.depth;
   out.status = mapper_.process(still);
   watch.lapMs();
+  const double waited_before_ms = loop_thread_.waitedMs();
   loop_thread_.serve(mapper_);
-  out.loop_ms = watch.lapMs();
+  out.loop_wait_ms = loop_thread_.waitedMs() - waited_before_ms;
+  out.loop_ms = watch.lapMs() - out.loop_wait_ms;
   return out;
 }
 

@@ -58,11 +58,11 @@ class RunStatistics {
   void addTime(const char* stage, double ms);
 
   /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion,
-  /// tracking_and_fusion, their sum, loop_closing (what of it keeps the frame waiting), and what
-  /// addTime() was told.
+  /// tracking_and_fusion, their sum, loop_closing (what loops cost the mapping thread),
+  /// loop_waiting (for answers), and what addTime() was told.
   std::map<std::string, StageTime> stages() const;
 
-  /// Times that the chain took for a frame, with what loops kept it waiting, in each minute of the
+  /// Times that the chain took for a frame, with what loops cost its thread, in each minute of the
   /// recording.
   std::vector<StageTime> minutes() const;
 

@@ -65,6 +65,9 @@ class LoopExchange {
   /// where the answers tell.
   const std::vector<double>& verificationMs() const { return verification_ms_; }
 
+  /// How long answers were waited for in all (ms); live, nobody waits.
+  double waitedMs() const { return waited_ms_; }
+
   /// Questions that were given up.
   std::size_t unanswered() const { return unanswered_; }
 
@@ -85,6 +88,7 @@ class LoopExchange {
   std::size_t unanswered_ = 0;
   LoopCounts counts_;
   std::vector<double> verification_ms_;
+  double waited_ms_ = 0;
 };
 
 }  // namespace pf

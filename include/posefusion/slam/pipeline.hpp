@@ -35,6 +35,9 @@ struct ProcessedFrame {
   FrameStatus status;
   /// Handing questions to the loop closer and taking its answers in; NaN: not known.
   double loop_ms = std::numeric_limits<double>::quiet_NaN();
+  /// Waiting for answers, which a run without a clock does so that they come in at the same frame
+  /// on every machine; NaN: not known.
+  double loop_wait_ms = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The whole chain, free of ROS: the offline runner, the tests and the benchmarks. `see` and `map`
