@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -129,16 +130,22 @@ TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
 /// Answers as the test says.
 class FakeResponder : public LoopResponder {
  public:
-  void ask(LoopQuestion question) override { questions.push_back(std::move(question)); }
-  bool isReady() override { return is_ready; }
-  std::optional<LoopAnswer> take() override {
+  std::uint64_t ask(LoopQuestion question) override {
+    questions.push_back(std::move(question));
+    return questions.size();
+  }
+  bool isReady(std::uint64_t number) override { return is_ready || ready.count(number) > 0; }
+  std::optional<LoopAnswer> take(std::uint64_t number) override {
     if (throws) throw std::runtime_error("broken");
+    taken.push_back(number);
     return std::nullopt;
   }
   void forget() override { questions.clear(); }
   bool isReplaced() override { return std::exchange(is_replaced, false); }
 
   std::vector<LoopQuestion> questions;
+  std::set<std::uint64_t> ready;     ///< numbers; the first question has 1
+  std::vector<std::uint64_t> taken;  ///< numbers, in order
   bool is_ready = false, throws = false, is_replaced = false;
 };
 
@@ -183,8 +190,12 @@ TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
   closer->questions.clear();
   for (int i = 0; i < kCovered; ++i) see(kMapped - 1, true);
   for (int i = 0; i < 3 && closer->questions.empty(); ++i) see(farthestFrame());
-  ASSERT_EQ(closer->questions.size(), 1U);
-  ASSERT_NE(closer->questions[0].place, nullptr);
+  ASSERT_EQ(closer->questions.size(), 2U) << "what is to be told, and then the place, by itself";
+  EXPECT_EQ(closer->questions[0].place, nullptr);
+  EXPECT_FALSE(closer->questions[0].is_urgent);
+  ASSERT_NE(closer->questions[1].place, nullptr);
+  EXPECT_TRUE(closer->questions[1].is_urgent);
+  EXPECT_FALSE(closer->questions[1].tellsMore());
   ASSERT_EQ(closer->questions[0].corrected.size(), mapper->backEnd().keyframePoses().size());
   EXPECT_EQ(closer->questions[0].corrected.back().T_map_camera.matrix(),
             mapper->backEnd().keyframePoses().back().T_map_camera.matrix());
@@ -210,6 +221,40 @@ TEST_F(LoopExchanges, ALostCameraAsksAgainWhenAQuestionWasGivenUp) {
   closer->throws = closer->is_ready = false;
   see(farthestFrame());
   EXPECT_EQ(places(), 3) << "it goes on after what was thrown";
+}
+
+TEST_F(LoopExchanges, ALostCamerasAnswerIsTakenBeforeThoseThatWait) {
+  int next = 0;
+  for (; next < kMapped && closer->questions.size() < 3; ++next) see(next);
+  ASSERT_EQ(closer->questions.size(), 3U) << "the test needs keyframes";
+  for (int i = 0; i < kCovered; ++i) see(next, true);
+  for (int i = 0; i < 3; ++i) see(farthestFrame());
+  const std::uint64_t place = closer->questions.size();
+  ASSERT_TRUE(closer->questions.back().is_urgent);
+  closer->ready = {place};
+  see(farthestFrame());
+  EXPECT_EQ(closer->taken, (std::vector<std::uint64_t>{place}));
+  closer->ready = {2, 3};
+  see(farthestFrame());
+  EXPECT_EQ(closer->taken.size(), 1U) << "all others in their order";
+  closer->ready = {1, 2, 3};
+  see(farthestFrame());
+  EXPECT_EQ(closer->taken, (std::vector<std::uint64_t>{place, 1, 2, 3}));
+}
+
+/// Offline, where answers depend on the order of the questions, nothing is urgent.
+class LaggingExchange : public LoopExchanges {
+ protected:
+  LaggingExchange() : LoopExchanges(AnswerTime::after_lag) {}
+};
+
+TEST_F(LaggingExchange, AsksInOneAndInOrder) {
+  for (int i = 0; i < 10; ++i) see(i);
+  for (int i = 0; i < kCovered; ++i) see(10, true);
+  for (int i = 0; i < 3; ++i) see(farthestFrame());
+  ASSERT_FALSE(closer->questions.empty());
+  EXPECT_NE(closer->questions.back().place, nullptr);
+  for (const LoopQuestion& question : closer->questions) EXPECT_FALSE(question.is_urgent);
 }
 
 TEST_F(LoopExchanges, WhoBeginsToAnswerIsToldOfAllKeyframes) {

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,9 +27,9 @@ class CloserLink : public pf::LoopResponder {
   CloserLink(const ros::NodeHandle& handle, double timeout_s);
   ~CloserLink() override;
 
-  void ask(pf::LoopQuestion question) override;
-  bool isReady() override;
-  std::optional<pf::LoopAnswer> take() override;
+  std::uint64_t ask(pf::LoopQuestion question) override;
+  bool isReady(std::uint64_t number) override;
+  std::optional<pf::LoopAnswer> take(std::uint64_t number) override;
   void forget() override;
   bool isReplaced() override;
 
@@ -47,16 +46,17 @@ class CloserLink : public pf::LoopResponder {
  private:
   using Clock = std::chrono::steady_clock;
   struct Asked {
-    std::uint64_t number = 0;
     Clock::time_point when;
-    bool is_lost = false;  // who was asked is gone
+    bool is_urgent = false;  // answered out of turn
+    bool is_lost = false;    // who was asked is gone
   };
+  using Question = std::map<std::uint64_t, Asked>::const_iterator;
 
   void onAnswer(const LoopAnswerMessage::ConstPtr& answer);
   void listen(std::chrono::milliseconds patience);
-  bool isAnswered() const { return answers_.count(asked_.front().number) > 0; }
-  bool isLost() const;
-  void wait();
+  bool isAnswered(Question question) const { return answers_.count(question->first) > 0; }
+  bool isLost(Question question) const;
+  void wait(Question question);
   void stall();
 
   ros::CallbackQueue queue_;  // of answers: outlives its subscriber
@@ -65,8 +65,8 @@ class CloserLink : public pf::LoopResponder {
   const Clock::duration timeout_;
   const std::uint64_t session_ = newIdentity();
   std::uint64_t number_ = 0;
-  std::deque<Asked> asked_;
-  std::map<std::uint64_t, LoopAnswerMessage::ConstPtr> answers_;  // by number
+  std::map<std::uint64_t, Asked> asked_;                          // by number
+  std::map<std::uint64_t, LoopAnswerMessage::ConstPtr> answers_;  // by number, of those asked
   std::uint64_t closer_ = 0;  // who answered last; 0: nobody yet
   bool was_there_ = true, is_replaced_ = false, is_stalled_ = false;
   std::atomic<bool> hurries_{false};

@@ -51,6 +51,15 @@ class Worker {
     return dropped;
   }
 
+  /// Adds an item that is handled next, before all that wait.
+  void pushFirst(Item item) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      items_.push_front(std::move(item));
+    }
+    changed_.notify_all();
+  }
+
   /// Runs `task` before the next item. The future is broken when the worker ends first.
   std::future<void> post(std::function<void()> task) {
     std::packaged_task<void()> packaged(std::move(task));

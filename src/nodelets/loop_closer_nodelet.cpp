@@ -12,7 +12,8 @@
 
 namespace posefusion_ros {
 
-/// Answers fusion's questions in their order, in a thread of its own: see pf::LoopWorker.
+/// Answers fusion's questions in their order, urgent ones first, in a thread of its own: see
+/// pf::LoopWorker.
 class LoopCloserNodelet : public ChainNodelet {
  public:
   ~LoopCloserNodelet() override {
@@ -46,7 +47,13 @@ class LoopCloserNodelet : public ChainNodelet {
         getNodeHandle().advertise<LoopAnswerMessage>(topics::kLoopConstraint, kInternalQueue);
   }
 
-  void onQuestion(const Question& asked) { worker_->push(asked); }
+  void onQuestion(const Question& asked) {
+    if (asked->question.is_urgent) {
+      worker_->pushFirst(asked);
+    } else {
+      worker_->push(asked);
+    }
+  }
 
   void answer(const Question& asked) {
     const auto message = boost::make_shared<LoopAnswerMessage>();

@@ -34,34 +34,39 @@ CloserLink::CloserLink(const ros::NodeHandle& handle, double timeout_s)
 
 CloserLink::~CloserLink() { answer_subscriber_.shutdown(); }
 
-void CloserLink::ask(pf::LoopQuestion question) {
+std::uint64_t CloserLink::ask(pf::LoopQuestion question) {
   const auto message = boost::make_shared<LoopQuestionMessage>();
   message->header.stamp = toTime(question.stamp_ns);
   message->session = session_;
   message->number = ++number_;
+  asked_[number_] = {Clock::now(), question.is_urgent, !isThere()};
   message->question = std::move(question);
-  asked_.push_back({number_, Clock::now(), !isThere()});
   question_publisher_.publish(LoopQuestionMessage::ConstPtr(message));
+  return number_;
 }
 
-bool CloserLink::isReady() {
+bool CloserLink::isReady(std::uint64_t number) {
   listen({});
-  if (isAnswered() || isLost()) return true;
-  if (Clock::now() < asked_.front().when + timeout_) return false;
+  const Question question = asked_.find(number);
+  if (isAnswered(question) || isLost(question)) return true;
+  if (Clock::now() < question->second.when + timeout_) return false;
   stall();
   return true;
 }
 
-/// Whether there will be no answer to the first question.
-bool CloserLink::isLost() const {
-  // Answers come in the order of the questions.
-  return asked_.front().is_lost || !answers_.empty() || !isThere() || !ros::ok();
+/// Whether there will be no answer to it.
+bool CloserLink::isLost(Question question) const {
+  if (question->second.is_lost || !isThere() || !ros::ok()) return true;
+  // Answers come in the order of the questions; urgent ones may only come sooner.
+  return std::any_of(answers_.begin(), answers_.end(), [&](const auto& answer) {
+    const auto other = asked_.find(answer.first);
+    return other->first > question->first && !other->second.is_urgent;
+  });
 }
 
-std::optional<pf::LoopAnswer> CloserLink::take() {
-  wait();
-  const std::uint64_t number = asked_.front().number;
-  asked_.pop_front();
+std::optional<pf::LoopAnswer> CloserLink::take(std::uint64_t number) {
+  wait(asked_.find(number));
+  asked_.erase(number);
   const auto found = answers_.find(number);
   if (found == answers_.end()) return std::nullopt;
   const LoopAnswerMessage::ConstPtr answer = found->second;
@@ -70,17 +75,17 @@ std::optional<pf::LoopAnswer> CloserLink::take() {
   return answer->answer;
 }
 
-/// Until the first question is answered, or nobody would answer it.
-void CloserLink::wait() {
+/// Until the question is answered, or nobody would answer it.
+void CloserLink::wait(Question question) {
   listen({});
-  if (isAnswered() || is_stalled_) return;
+  if (isAnswered(question) || is_stalled_) return;
   Clock::duration waited{};  // looks are counted: a process that was stopped has not waited
-  while (!isAnswered()) {
+  while (!isAnswered(question)) {
     if (hurries_) {
       is_stalled_ = true;
       return;
     }
-    if (isLost()) {
+    if (isLost(question)) {
       complaint_ = kGone;
       return;
     }
@@ -108,7 +113,7 @@ bool CloserLink::isReplaced() {
   listen({});
   const bool is_there = isThere();
   if (is_there && !was_there_) is_replaced_ = true;
-  for (Asked& asked : asked_) asked.is_lost = asked.is_lost || !is_there;
+  for (auto& [number, asked] : asked_) asked.is_lost = asked.is_lost || !is_there;
   was_there_ = is_there;
   return std::exchange(is_replaced_, false);
 }
@@ -123,8 +128,7 @@ void CloserLink::onAnswer(const LoopAnswerMessage::ConstPtr& answer) {
   if (closer_ != 0 && closer_ != answer->closer) is_replaced_ = true;
   closer_ = answer->closer;
   // One that was given up or forgotten is not wanted any more.
-  if (asked_.empty() || answer->number < asked_.front().number) return;
-  answers_[answer->number] = answer;
+  if (asked_.count(answer->number) > 0) answers_[answer->number] = answer;
 }
 
 }  // namespace posefusion_ros

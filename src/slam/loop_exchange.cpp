@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/loop_exchange.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "posefusion/core/stopwatch.hpp"
@@ -11,15 +12,18 @@ namespace pf {
 void LoopExchange::serve(Mapper& mapper) {
   if (responder_->isReplaced()) mapper.introduceCloser();
   if (auto question = mapper.takeQuestion()) {
-    asked_.push_back({number_, question->place != nullptr});
-    responder_->ask(std::move(*question));
+    if (time_ == AnswerTime::when_ready) {
+      askInParts(std::move(*question));
+    } else {
+      ask(std::move(*question));
+    }
   }
-  while (isDue(mapper)) takeOne(mapper);
-  ++number_;
+  for (auto due = findDue(mapper); due != asked_.end(); due = findDue(mapper)) take(due, mapper);
+  ++frame_;
 }
 
 void LoopExchange::finish(Mapper& mapper) {
-  while (!asked_.empty()) takeOne(mapper);
+  while (!asked_.empty()) take(asked_.begin(), mapper);
 }
 
 void LoopExchange::reset() {
@@ -27,24 +31,51 @@ void LoopExchange::reset() {
   responder_->forget();
 }
 
-bool LoopExchange::isDue(const Mapper& mapper) const {
-  if (asked_.empty()) return false;
-  if (time_ == AnswerTime::after_lag) {
-    return number_ >= asked_.front().number + mapper.pace().framesIn(lag_s_);
-  }
-  return responder_->isReady();
+void LoopExchange::ask(LoopQuestion question) {
+  const bool for_place = question.place != nullptr;
+  asked_.push_back({frame_, responder_->ask(std::move(question)), for_place});
 }
 
-void LoopExchange::takeOne(Mapper& mapper) {
-  const Asked asked = asked_.front();
-  asked_.pop_front();
+/// Where a lost camera is does not wait for what else there is to be told or asked.
+void LoopExchange::askInParts(LoopQuestion question) {
+  LoopQuestion place;
+  place.stamp_ns = question.stamp_ns;
+  place.depth_version = question.depth_version;
+  place.place = std::exchange(question.place, nullptr);
+  place.is_urgent = true;
+  // Told first: who has nothing else to do knows of it then.
+  if (question.tellsMore()) ask(std::move(question));
+  if (place.place) ask(std::move(place));
+}
+
+/// The first question whose answer is to be taken now.
+std::deque<LoopExchange::Asked>::iterator LoopExchange::findDue(const Mapper& mapper) {
+  if (asked_.empty()) return asked_.end();
+  if (time_ == AnswerTime::after_lag) {
+    const bool due = frame_ >= asked_.front().at + mapper.pace().framesIn(lag_s_);
+    return due ? asked_.begin() : asked_.end();
+  }
+  // Urgent are those for a place; all others come in their order.
+  const auto first =
+      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return !a.for_place; });
+  const auto place =
+      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return a.for_place; });
+  for (const auto one : {place, first}) {
+    if (one != asked_.end() && responder_->isReady(one->number)) return one;
+  }
+  return asked_.end();
+}
+
+void LoopExchange::take(std::deque<Asked>::iterator which, Mapper& mapper) {
+  const Asked asked = *which;
+  asked_.erase(which);
   // Where there is no answer the mapper is told that nothing was found, so that it asks again.
   LoopAnswer nothing;
   nothing.asked_for_place = asked.for_place;
   std::optional<LoopAnswer> answer;
   Stopwatch watch;
   try {
-    answer = responder_->take();
+    answer = responder_->take(asked.number);
     waited_ms_ += watch.lapMs();
   } catch (...) {
     ++unanswered_;

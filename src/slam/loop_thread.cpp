@@ -2,8 +2,9 @@
 #include "posefusion/slam/loop_thread.hpp"
 
 #include <chrono>
-#include <deque>
+#include <cstdint>
 #include <future>
+#include <map>
 #include <utility>
 
 namespace pf {
@@ -15,7 +16,7 @@ class ThreadResponder : public LoopResponder {
       : worker_(std::make_shared<LoopWorker>(config.loop, config.tracking, depthSensorOf(config),
                                              config.calibration)) {}
 
-  void ask(LoopQuestion question) override {
+  std::uint64_t ask(LoopQuestion question) override {
     // Each question waits for the one before: the worker sees them in their order. A future holds
     // its work, so that both are let go here: else each would hold all those before.
     auto work = [worker = worker_, before = last_, question = std::move(question)]() mutable {
@@ -24,16 +25,17 @@ class ThreadResponder : public LoopResponder {
       return worker->answer(mine);
     };
     last_ = std::async(std::launch::async, std::move(work)).share();
-    answers_.push_back(last_);
+    answers_[++number_] = last_;
+    return number_;
   }
 
-  bool isReady() override {
-    return answers_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  bool isReady(std::uint64_t number) override {
+    return answers_.at(number).wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
 
-  std::optional<LoopAnswer> take() override {
-    const std::shared_future<LoopAnswer> answer = std::move(answers_.front());
-    answers_.pop_front();
+  std::optional<LoopAnswer> take(std::uint64_t number) override {
+    const std::shared_future<LoopAnswer> answer = std::move(answers_.at(number));
+    answers_.erase(number);
     return answer.get();
   }
 
@@ -42,7 +44,8 @@ class ThreadResponder : public LoopResponder {
  private:
   std::shared_ptr<LoopWorker> worker_;
   std::shared_future<LoopAnswer> last_;  ///< of the newest question
-  std::deque<std::shared_future<LoopAnswer>> answers_;
+  std::uint64_t number_ = 0;
+  std::map<std::uint64_t, std::shared_future<LoopAnswer>> answers_;
 };
 
 }  // namespace

@@ -47,6 +47,28 @@ TEST(Worker, GivesBackTheOldestWhenTooManyWait) {
   EXPECT_EQ(seen.front(), 0);
 }
 
+TEST(Worker, WhatIsUrgentIsHandledNext) {
+  std::promise<void> gate, begun;
+  const auto opened = gate.get_future().share();
+  std::vector<int> seen;
+  Worker<int> worker(0, [&](int item) {
+    if (item == 0) begun.set_value();
+    opened.wait();
+    seen.push_back(item);
+  });
+  worker.push(0);
+  begun.get_future().get();
+  for (int i = 1; i < 50; ++i) worker.push(i);
+  worker.pushFirst(99);
+  gate.set_value();
+  while (worker.waiting() > 0) std::this_thread::yield();
+  worker.post([] {}).get();
+  ASSERT_EQ(seen.size(), 51U);
+  EXPECT_EQ(seen[0], 0);
+  EXPECT_EQ(seen[1], 99);
+  EXPECT_EQ(seen[2], 1);
+}
+
 TEST(Worker, TasksRunBeforeWaitingItems) {
   std::promise<void> gate, begun, done;
   const auto opened = gate.get_future().share();

@@ -45,6 +45,15 @@ struct LoopQuestion {
   /// Constraints between known keyframes that are to be measured anew, as their depth has changed.
   std::vector<PoseConstraint> remeasured{};
   bool calibrates = false;  ///< asked for: the camera's field is estimated now
+
+  /// Of a place and nothing else: it is answered before the questions that wait, from what is known
+  /// then.
+  bool is_urgent = false;
+
+  /// Whether there is anything beside the lost camera.
+  bool tellsMore() const {
+    return keyframe || step || known || !corrected.empty() || !remeasured.empty() || calibrates;
+  }
 };
 
 /// What was found.

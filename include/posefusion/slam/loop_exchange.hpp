@@ -20,20 +20,21 @@ enum class AnswerTime {
   when_ready  ///< live: nobody waits
 };
 
-/// Answers questions in their order, beside the mapper: in a thread, or in another nodelet. The
-/// owner's thread alone may call it.
+/// Answers questions beside the mapper: in a thread, or in another nodelet. In their order, but for
+/// urgent ones, which may come sooner. The owner's thread alone may call it.
 class LoopResponder {
  public:
   virtual ~LoopResponder() = default;
 
-  virtual void ask(LoopQuestion question) = 0;
+  /// Returns the question's number; they rise.
+  virtual std::uint64_t ask(LoopQuestion question) = 0;
 
-  /// Whether take() would not wait. There is a question that was not taken yet.
-  virtual bool isReady() = 0;
+  /// Whether take() of that number would not wait.
+  virtual bool isReady(std::uint64_t number) = 0;
 
-  /// The answer to the oldest question that was not taken yet, waited for; nothing where it was
-  /// given up. Throws what the work threw.
-  virtual std::optional<LoopAnswer> take() = 0;
+  /// The answer to a question that was not taken yet, waited for; nothing where it was given up.
+  /// Throws what the work threw.
+  virtual std::optional<LoopAnswer> take(std::uint64_t number) = 0;
 
   /// Forgets all questions that were not taken yet.
   virtual void forget() = 0;
@@ -73,18 +74,21 @@ class LoopExchange {
 
  private:
   struct Asked {
-    std::int64_t number = 0;
+    std::int64_t at = 0;       ///< number of the frame
+    std::uint64_t number = 0;  ///< of the question
     bool for_place = false;
   };
 
-  bool isDue(const Mapper& mapper) const;
-  void takeOne(Mapper& mapper);
+  void ask(LoopQuestion question);
+  void askInParts(LoopQuestion question);
+  std::deque<Asked>::iterator findDue(const Mapper& mapper);
+  void take(std::deque<Asked>::iterator asked, Mapper& mapper);
 
   double lag_s_;
   AnswerTime time_;
   std::unique_ptr<LoopResponder> responder_;
   std::deque<Asked> asked_;
-  std::int64_t number_ = 0;  ///< of the frame
+  std::int64_t frame_ = 0;  ///< its number
   std::size_t unanswered_ = 0;
   LoopCounts counts_;
   std::vector<double> verification_ms_;
