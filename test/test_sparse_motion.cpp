@@ -177,5 +177,48 @@ TEST_F(NearPersonTest, NorWhereHeIsNotMaskedAndHisRimIsSeen) {
   EXPECT_LT(error(motion).norm(), 0.02);
 }
 
+/// A part of the picture without depth that has most corners: a shiny panel on the wall, or a
+/// window through which something infinitely far is seen. The camera goes fast.
+class HoleTest : public SparseMotionTest, public testing::WithParamInterface<bool> {
+ protected:
+  HoleTest() {
+    Vector6d twist;
+    twist << 0.13, 0.04, 0.06, 0.06, 0.01, 0.15;
+    T_before_after_ = expSe3(twist);
+    after_m_ = depthFrom(T_before_after_);
+    addCorners(400, 0, 0.2);
+    const SparseFlow all = flow_;
+    flow_.before.clear(), flow_.after.clear(), flow_.ids.clear();
+    int beside = 0;
+    for (std::size_t i = 0; i < all.before.size(); ++i) {
+      const bool in_hole = all.before[i].x < kEdge_px;
+      if (in_hole ? i % 4 != 0 : ++beside > 14) continue;
+      flow_.before.push_back(all.before[i]);
+      flow_.after.push_back(in_hole && GetParam() ? atInfinity(all.before[i]) : all.after[i]);
+      flow_.ids.push_back(all.ids[i]);
+    }
+    before_m_.colRange(0, kEdge_px).setTo(0);
+    after_m_.setTo(0);  // blurred: nothing is to be had of it
+  }
+
+  cv::Point2f atInfinity(const cv::Point2f& pixel) const {
+    const Eigen::Vector3d ray = camera_.unproject(pixel.x, pixel.y, 1.0);
+    const Eigen::Vector2d seen = camera_.project(T_before_after_.linear().transpose() * ray);
+    return {static_cast<float>(seen.x()), static_cast<float>(seen.y())};
+  }
+
+  static constexpr int kEdge_px = 300;
+};
+
+TEST_P(HoleTest, DoesNotHoldBackAShift) {
+  const SparseMotion motion = estimate();
+  ASSERT_TRUE(motion.found) << motion.inliers << " of " << motion.matches;
+  EXPECT_GT(motion.matches, 40) << "the hole's corners help to tell the turn";
+  EXPECT_LT(error(motion).head<3>().norm(), 0.03);
+  EXPECT_LT(error(motion).tail<3>().norm(), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(PanelOrWindow, HoleTest, testing::Bool());
+
 }  // namespace
 }  // namespace pf

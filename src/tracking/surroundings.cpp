@@ -8,8 +8,6 @@ namespace {
 
 constexpr int kCell_px = 8;
 constexpr float kPerson_m = -1.0F;
-// What has no depth beside a surface nearer than this may be too near for the sensor, not too far.
-constexpr float kOpen_m = 1.5F;
 
 }  // namespace
 
@@ -28,17 +26,17 @@ Surroundings::Surroundings(const cv::Mat& depth_m, const cv::Mat& still) : full_
   for (int v = 0; v < cells.height; ++v) {
     for (int u = 0; u < cells.width; ++u) {
       const float shown = depth.at<float>(v, u);
-      if (shown != 0) depth_of_[static_cast<std::size_t>(nearest_.at<int>(v, u))] = shown;
+      if (shown > 0) depth_of_[static_cast<std::size_t>(nearest_.at<int>(v, u))] = shown;
     }
   }
 }
 
-bool Surroundings::areOpen(const cv::Point2f& pixel) const {
-  if (depth_of_.empty()) return false;
+double Surroundings::depthBeside(const cv::Point2f& pixel) const {
+  if (depth_of_.empty()) return 0;
   const int v = static_cast<int>(pixel.y) * nearest_.rows / full_.height;
   const int u = static_cast<int>(pixel.x) * nearest_.cols / full_.width;
   const bool inside = u >= 0 && v >= 0 && u < nearest_.cols && v < nearest_.rows;
-  return inside && depth_of_[static_cast<std::size_t>(nearest_.at<int>(v, u))] > kOpen_m;
+  return inside ? depth_of_[static_cast<std::size_t>(nearest_.at<int>(v, u))] : 0;
 }
 
 }  // namespace pf

@@ -6,22 +6,21 @@
 
 namespace pf {
 
-/// What lies next to pixels without depth: tells those beyond the sensor's range from those too
-/// near for it.
+/// What lies next to pixels without depth.
 class Surroundings {
  public:
   /// `depth_m`: CV_32FC1, 0 = none, people removed; may be empty. `still`: any size, CV_8UC1, 0 = a
   /// person's pixel; empty: nobody.
   Surroundings(const cv::Mat& depth_m, const cv::Mat& still);
 
-  /// Whether the next thing to be seen beside a pixel is still, and not near. Not outside, nor
-  /// where nothing is seen at all.
-  bool areOpen(const cv::Point2f& pixel) const;
+  /// Depth (m) of the next thing to be seen beside a pixel; 0 of a person, outside, and where
+  /// nothing is seen at all.
+  double depthBeside(const cv::Point2f& pixel) const;
 
  private:
   cv::Size full_;
   cv::Mat nearest_;              ///< of each cell: number of the nearest that shows something
-  std::vector<float> depth_of_;  ///< by that number (m); kPerson_m of a person
+  std::vector<float> depth_of_;  ///< by that number (m); 0 of a person
 };
 
 }  // namespace pf
