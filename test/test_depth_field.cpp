@@ -75,9 +75,16 @@ TEST(DepthField, centredHasNoMean) {
   EXPECT_NEAR(compare(field, field.inverse()).correlation, -1, 1e-12);
 }
 
+TEST(DepthField, anotherGridIsTakenByItsNext) {
+  const DepthField coarse = test::roomField();
+  const DepthField fine = fittedField(49, 37, [&](double x, double y) { return coarse.at(x, y); });
+  const DepthField both = fine.then(coarse);
+  EXPECT_EQ(both.columns(), coarse.columns());
+  EXPECT_LT(compare(both, coarse.then(coarse)).rms_difference, 0.01 * coarse.rms());
+}
+
 TEST(DepthField, refusesWhatIsNoGrid) {
   EXPECT_THROW(DepthField(3, 9), std::invalid_argument);
-  EXPECT_THROW(flat(0).then(DepthField(5, 4)), std::invalid_argument);
   EXPECT_THROW(DepthField(4, 4, std::vector<double>(15)), std::invalid_argument);
   EXPECT_THROW(flat(std::nan("")), std::invalid_argument);
 }

@@ -158,7 +158,8 @@ DepthField DepthField::inverse() const {
 
 DepthField DepthField::then(const DepthField& next) const {
   if (next.columns_ != columns_ || next.rows_ != rows_) {
-    throw std::invalid_argument("two fields of different grids");
+    return fittedField(next.columns_, next.rows_, [&](double x, double y) { return at(x, y); })
+        .then(next);
   }
   DepthField field = *this;
   for (std::size_t i = 0; i < nodes_.size(); ++i) field.nodes_[i] += next.nodes_[i];

@@ -19,16 +19,9 @@ constexpr double kConverged = 0.002;
 /// Half of |x| of a standard normal variable is below it.
 constexpr double kMedianOfNormal = 0.6745;
 
-/// What is known may have been written on another grid, as the true fields of the simulator are.
-DepthField onGridOf(const DepthField& like, const DepthField& field) {
-  if (field.columns() == like.columns() && field.rows() == like.rows()) return field;
-  return fittedField(like.columns(), like.rows(),
-                     [&](double x, double y) { return field.at(x, y); });
-}
-
 /// Adds what is known of any camera: errors are small, and smooth over the image.
 void addPrior(const DepthField& found, const FieldEstimateConfig& config, FieldEquations& sum) {
-  const DepthField field = onGridOf(found, config.known).then(found);
+  const DepthField field = config.known.then(found);
   const double node = 1.0 / (config.node_sigma_per_m * config.node_sigma_per_m);
   const double smooth = 1.0 / (config.smooth_sigma_per_m * config.smooth_sigma_per_m);
   const auto& d = field.nodes();

@@ -92,7 +92,7 @@ void LoopWorker::learn(const LoopQuestion& question, LoopAnswer& answer) {
   answer.depth_version = question.depth_version;
   if (!calibration_.learns() || !(question.keyframe || question.calibrates)) return;
   const std::optional<DepthCalibration>& known = question.calibration;
-  const DepthField field = known ? known->field : DepthField();
+  const DepthField field = fieldOf(known);
   const auto estimate = question.calibrates ? std::optional<FieldEstimate>(learner_.estimate(field))
                                             : learner_.learn(field);
   if (!estimate) return;

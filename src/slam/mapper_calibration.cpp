@@ -40,7 +40,7 @@ StaticFrame Mapper::State::corrected(const StaticFrame& input) {
 void Mapper::State::use(std::optional<DepthCalibration> known) {
   calibration = std::move(known);
   is_calibration_loaded = calibration.has_value();
-  const DepthField field = calibration ? calibration->field : DepthField();
+  const DepthField field = fieldOf(calibration);
   corrector = DepthCorrector(field);
   distorter = DepthCorrector(field.inverse());
   sensor = depthSensorOf(config);

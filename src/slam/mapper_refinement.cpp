@@ -46,7 +46,7 @@ std::string Mapper::State::learnFromAll() {
   std::vector<CalibrationView> seen;
   for (const KeyframeView& view : views) seen.push_back(calibrationView(view, sensor));
   FieldEstimateConfig how;
-  if (calibration) how.known = calibration->field;
+  how.known = fieldOf(calibration);
   const FieldEstimate estimate = estimateField(seen, how);
   const bool is_off = estimate.doubtBeside(calibration).empty();
   if (is_off && config.calibration.learns()) {

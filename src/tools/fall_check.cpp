@@ -154,7 +154,7 @@ std::vector<FallFrame> framesOf(const Options& options, const SavedMap& saved,
   const auto true_poses = truthOf(truth.trajectory, rows);
   Judge judge(map);
   const auto source = openTumFolder(options.sequence);
-  DepthCorrector corrector(saved.calibration ? saved.calibration->field : DepthField());
+  DepthCorrector corrector(fieldOf(saved.calibration));
   std::vector<FallFrame> frames;
   auto row = rows.begin();
   while (auto next = source->next()) {

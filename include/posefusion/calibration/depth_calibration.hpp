@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "posefusion/calibration/depth_field.hpp"
@@ -18,6 +19,11 @@ struct DepthCalibration {
   double before_mm = 0, after_mm = 0;    ///< median residual of pairs that were kept out
   double left_per_m = 0;  ///< standard deviation of what the field leaves (1/m); 0: not known
 };
+
+/// That depth is corrected by; none: it is as measured.
+inline DepthField fieldOf(const std::optional<DepthCalibration>& calibration) {
+  return calibration ? calibration->field : DepthField();
+}
 
 /// Why a calibration does not hold for images of this camera: a ray would meet the field more than
 /// half a cell from where it belongs. Empty when it holds; sizes may differ.

@@ -57,8 +57,8 @@ class DepthField {
   /// The field that distorts as this one corrects.
   DepthField inverse() const;
 
-  /// This field, then another: what both together correct. Throws std::invalid_argument for another
-  /// grid.
+  /// This field, then another: what both together correct, on the other's grid. The true fields of
+  /// the simulator are finer than what is estimated.
   DepthField then(const DepthField& next) const;
 
  private:
