@@ -15,6 +15,7 @@ CalibrationViews readCalibrationViews(const std::string& map_file) {
   CalibrationViews all;
   all.camera = content.camera;
   all.corrected_by = calibrationOf(content);
+  const DepthSensor sensor = depthSensorOf(settingsOf(content, map_file));
   for (const Keyframe& keyframe : content.keyframes) {
     KeyframeImages images = reader.images(keyframe.id);
     if (images.depth_mm.empty()) continue;
@@ -23,6 +24,7 @@ CalibrationViews readCalibrationViews(const std::string& map_file) {
     view.id = keyframe.id;
     view.T_map_camera = keyframe.T_map_camera;
     view.fragment = keyframe.fragment;
+    view.sensor = sensor;
     if (shrink >= 1) view.camera = content.camera.shrunk(shrink);
     if (view.camera.width != images.depth_mm.cols || view.camera.height != images.depth_mm.rows) {
       throw InputError(map_file + ": the depth of keyframe " + std::to_string(keyframe.id) +

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "map_encoding.hpp"
+#include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/io/calibration_file.hpp"
@@ -99,6 +100,12 @@ std::optional<DepthCalibration> calibrationOf(const MapContent& content) {
   const auto blob = content.blobs.find(kCalibration);
   if (blob == content.blobs.end()) return std::nullopt;
   return parseCalibration(blob->second, "its calibration of depth");
+}
+
+Config settingsOf(const MapContent& content, const std::string& file) {
+  Config config;
+  if (!content.settings.empty()) applyYaml(config, parseYaml(content.settings, file), file);
+  return config;
 }
 
 SavedMap readSavedMap(const std::string& path) {

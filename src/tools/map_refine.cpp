@@ -4,19 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 
 namespace pf {
 namespace {
-
-/// Those that the map was made with.
-Config settingsOf(const std::string& text, const std::string& file) {
-  Config config;
-  if (!text.empty()) applyYaml(config, parseYaml(text, file), file);
-  return config;
-}
 
 void write(const Mapper& mapper, const PinholeCamera& camera, const Config& config,
            const std::string& output) {
@@ -37,7 +29,7 @@ void refineMap(const std::string& file, const std::string& output) {
   if (std::filesystem::exists(output)) {
     throw InputError(output + ": is there already, expected the name of a new map");
   }
-  const Config config = settingsOf(MapReader(file).content().settings, file);
+  const Config config = settingsOf(MapReader(file).content(), file);
   SavedMap map = readSavedMap(file);
   const PinholeCamera camera = map.camera;
   Mapper mapper(config);

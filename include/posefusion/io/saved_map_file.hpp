@@ -23,6 +23,9 @@ std::optional<Eigen::Isometry3d> placeOf(const MapContent& content);
 /// That the depth of a map was corrected by. Throws InputError where what the file says cannot be.
 std::optional<DepthCalibration> calibrationOf(const MapContent& content);
 
+/// That the map of a file was made with; throws InputError naming it.
+Config settingsOf(const MapContent& content, const std::string& file);
+
 /// The rectified camera of the first good frame of a recording, which is read for it.
 std::optional<PinholeCamera> firstCamera(FrameSource& frames);
 
