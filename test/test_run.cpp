@@ -155,8 +155,9 @@ TEST(BadDepth, AllZeroOrAllNanIsNotFusedAndTrackingGoesOnAfterIt) {
     const Result result = runWithDepth(depth);
     for (std::size_t i = 5; i < 10; ++i) {
       EXPECT_EQ(result.outcomes[i], FrameOutcome::no_depth) << i;
-      EXPECT_EQ(result.poses[i], result.poses[5])
-          << "corners carry the pose into the first one only";
+      // Corners whose places are known carry the pose.
+      EXPECT_LT((result.poses[i] - sequence().pose(static_cast<int>(i)).matrix()).norm(), 0.02)
+          << i;
     }
     for (std::size_t i = 10; i < kFrames; ++i) EXPECT_EQ(result.outcomes[i], FrameOutcome::fused);
     EXPECT_LT((result.poses.back() - sequence().pose(kFrames - 1).matrix()).norm(), 0.05);
