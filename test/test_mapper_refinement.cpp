@@ -91,6 +91,13 @@ TEST_F(MapperRefinementTest, OfACameraThatIsNotKnownNothingIsAligned) {
   EXPECT_EQ(error_m(mapper), before_m);
 }
 
+TEST_F(MapperRefinementTest, OfOneKeyframeItSaysSo) {
+  Mapper mapper(dense());
+  mapper.process({room().frame(0).frame, {}, {}});
+  EXPECT_EQ(mapper.refine().text(),
+            "not refined: there is one keyframe, which nothing compares with");
+}
+
 TEST_F(MapperRefinementTest, AGoodMapStaysGoodAndTwiceIsNoMoreThanOnce) {
   Mapper mapper(dense());
   mapper.load(mapped(), MapUse::extend);

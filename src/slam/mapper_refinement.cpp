@@ -73,6 +73,7 @@ Mapper::Refinement Mapper::refine() {
   Refinement result;
   if (!s.may_change) result.reason = "the map may not change";
   if (s.views.empty()) result.reason = "there are no pictures of keyframes";
+  if (s.views.size() == 1) result.reason = "there is one keyframe, which nothing compares with";
   if (!result.reason.empty()) return result;
   const std::vector<MapPose> before = s.back_end.keyframePoses();
   s.placeViews();
