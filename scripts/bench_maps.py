@@ -82,7 +82,7 @@ class Maps(Runs):
         self.wrong_loops(name, sequence, folder, barred)
         minutes = summary["by_minute"]
         for part, what in (("median_ms", "median"), ("p99_ms", "99 %")):
-            growth = minutes[-1][part] / minutes[1][part] if len(minutes) > 2 else None
+            growth = minutes[-1][part] / minutes[1][part] if len(minutes) > 2 and minutes[1][part] > 0 else None
             self.row(f"{name}, a frame of the last minute against the second, loops and all, {what}", growth,
                      "x", bar(1.1) if growth else None, digits=2)
         self.row(f"{name}, peak memory", summary["peak_memory_mb"], "MB", bar(1500), digits=0)

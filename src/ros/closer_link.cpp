@@ -75,7 +75,7 @@ std::optional<pf::LoopAnswer> CloserLink::take(std::uint64_t number) {
   return answer->answer;
 }
 
-/// Until the question is answered, or nobody would answer it.
+/// Blocks until the question is answered, given up, or known to stay without an answer.
 void CloserLink::wait(Question question) {
   listen({});
   if (isAnswered(question) || is_stalled_) return;

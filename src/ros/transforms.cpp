@@ -57,9 +57,8 @@ std::optional<Eigen::Isometry3d> TransformLookup::look(const std::string& target
                                                        const std::string& source,
                                                        const ros::Time& stamp,
                                                        std::string& note) const {
-  note.clear();
-  // Before that of the stamp: asked for after it, one that came between the two would be called
-  // older than the image.
+  // Looked up before that of the stamp: a transform that comes between the two lookups would else
+  // be called older than the image.
   const auto newest = settings_.exact ? std::nullopt : at(target, source, ros::Time(0), note);
   const auto T = at(target, source, stamp, note);
   if (T) return tf2::transformToEigen(*T);

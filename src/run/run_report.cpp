@@ -71,7 +71,7 @@ std::string fixed(double value, int decimals) {
   return out.str();
 }
 
-nlohmann::ordered_json timesJson(const StageTime& time) {
+ordered_json timesJson(const StageTime& time) {
   return {{"median_ms", time.median_ms},
           {"p95_ms", time.p95_ms},
           {"p99_ms", time.p99_ms},
@@ -159,7 +159,7 @@ std::string RunReport::summary(std::size_t surfels) const {
   for (const auto& [name, time] : statistics_.stages()) {
     out["stages"][name] = timesJson(time);
   }
-  out["by_minute"] = nlohmann::ordered_json::array();
+  out["by_minute"] = ordered_json::array();
   for (const StageTime& time : statistics_.minutes()) out["by_minute"].push_back(timesJson(time));
   out["configuration"] = configurationJson(config_);
   return out.dump(2) + "\n";

@@ -43,7 +43,7 @@ void LoopExchange::askInParts(LoopQuestion question) {
   place.depth_version = question.depth_version;
   place.place = std::exchange(question.place, nullptr);
   place.is_urgent = true;
-  // Told first: who has nothing else to do knows of it then.
+  // Asked first: an idle closer has taken it in before it looks for the place.
   if (question.tellsMore()) ask(std::move(question));
   if (place.place) ask(std::move(place));
 }

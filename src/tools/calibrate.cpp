@@ -104,7 +104,7 @@ int calibrate(const Options& options) {
   const CalibrationViews seen =
       isMap(options.input) ? readCalibrationViews(options.input) : viewsOfRecording(options);
   FieldEstimateConfig config;
-  if (seen.corrected_by) config.known = seen.corrected_by->field;
+  config.known = fieldOf(seen.corrected_by);
   const FieldEstimate estimate = estimateField(seen.views, config);
   printEstimate(estimate);
   std::optional<DepthField> truth;

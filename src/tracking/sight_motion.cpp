@@ -11,11 +11,13 @@ namespace pf {
 namespace {
 
 constexpr int kMaxIterations = 10;
-// Standard deviation of a corner's place, in cornerPixel().
+// Standard deviation of a corner's place, in cornerPixel(): the same angle in images of any size,
+// as far as those have the pixels.
 constexpr double kCornerSigma = 0.3;
 constexpr double kCauchyScale = 1.0;  // standard deviations
 constexpr double kInlierSigmas = 4.0;
-// Of SightMotion::far: anything from 0 to 2 is as likely.
+constexpr double kNearest_m = 0.1;  // before the later camera
+// 1 / variance of SightMotion::far, of which anything from 0 to 2 is equally likely.
 constexpr double kFarInformation = 3.0;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
@@ -44,7 +46,7 @@ void addSight(const Sight& l, const PinholeCamera& camera, const SightMotion& at
   const double unit = l.hasDepth() ? 1.0 : at.far * l.far_inverse;
   const Eigen::Vector3d t = at.T_after_before.translation();
   const Eigen::Vector3d q = at.T_after_before.linear() * l.before + unit * t;
-  if (q.z() < 0.1) return;
+  if (q.z() < kNearest_m) return;
   const double iz = 1.0 / q.z();
   const Eigen::Vector2d error = (camera.project(q) - l.after_px) / sigma_px;
   Eigen::Matrix<double, 3, 7> dq;

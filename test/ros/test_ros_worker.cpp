@@ -26,67 +26,65 @@ TEST(Worker, HandlesAllItemsInOrder) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(seen[i], i);
 }
 
-TEST(Worker, GivesBackTheOldestWhenTooManyWait) {
-  std::promise<void> gate, begun;
-  const auto opened = gate.get_future().share();
+/// A worker that is busy with item 0 until it is let go, and notes what it handles.
+class HeldWorker {
+ public:
+  explicit HeldWorker(std::size_t limit) : worker(limit, [this](int item) { handle(item); }) {
+    worker.push(0);
+    begun_.get_future().get();
+  }
+
+  /// Returns when all that waits is handled.
+  void letGo() {
+    gate_.set_value();
+    while (worker.waiting() > 0) std::this_thread::yield();
+    worker.post([] {}).get();
+  }
+
   std::vector<int> seen;
-  Worker<int> worker(2, [&](int item) {
-    if (item == 0) begun.set_value();
-    opened.wait();
+
+ private:
+  void handle(int item) {
+    if (item == 0) begun_.set_value();
+    opened_.wait();
     seen.push_back(item);
-  });
-  worker.push(0);
-  begun.get_future().get();
-  EXPECT_FALSE(worker.push(1));
-  EXPECT_FALSE(worker.push(2));
-  EXPECT_EQ(worker.push(3), std::optional<int>(1));
-  EXPECT_EQ(worker.waiting(), 2U);
-  gate.set_value();
-  while (worker.waiting() > 0) std::this_thread::yield();
-  worker.post([] {}).get();
-  EXPECT_EQ(seen.front(), 0);
+  }
+
+  std::promise<void> gate_, begun_;
+  std::shared_future<void> opened_ = gate_.get_future().share();
+
+ public:
+  Worker<int> worker;  // last: its thread uses all the others
+};
+
+TEST(Worker, GivesBackTheOldestWhenTooManyWait) {
+  HeldWorker held(2);
+  EXPECT_FALSE(held.worker.push(1));
+  EXPECT_FALSE(held.worker.push(2));
+  EXPECT_EQ(held.worker.push(3), std::optional<int>(1));
+  EXPECT_EQ(held.worker.waiting(), 2U);
+  held.letGo();
+  EXPECT_EQ(held.seen.front(), 0);
 }
 
 TEST(Worker, WhatIsUrgentIsHandledNext) {
-  std::promise<void> gate, begun;
-  const auto opened = gate.get_future().share();
-  std::vector<int> seen;
-  Worker<int> worker(0, [&](int item) {
-    if (item == 0) begun.set_value();
-    opened.wait();
-    seen.push_back(item);
-  });
-  worker.push(0);
-  begun.get_future().get();
-  for (int i = 1; i < 50; ++i) worker.push(i);
-  worker.pushFirst(99);
-  gate.set_value();
-  while (worker.waiting() > 0) std::this_thread::yield();
-  worker.post([] {}).get();
-  ASSERT_EQ(seen.size(), 51U);
-  EXPECT_EQ(seen[0], 0);
-  EXPECT_EQ(seen[1], 99);
-  EXPECT_EQ(seen[2], 1);
+  HeldWorker held(0);
+  for (int i = 1; i < 50; ++i) held.worker.push(i);
+  held.worker.pushFirst(99);
+  held.letGo();
+  ASSERT_EQ(held.seen.size(), 51U);
+  EXPECT_EQ(held.seen[0], 0);
+  EXPECT_EQ(held.seen[1], 99);
+  EXPECT_EQ(held.seen[2], 1);
 }
 
 TEST(Worker, TasksRunBeforeWaitingItems) {
-  std::promise<void> gate, begun, done;
-  const auto opened = gate.get_future().share();
-  std::vector<int> order;
-  Worker<int> worker(0, [&](int item) {
-    if (item == 0) begun.set_value();
-    opened.wait();
-    order.push_back(item);
-    if (item == 1) done.set_value();
-  });
-  worker.push(0);
-  begun.get_future().get();
-  worker.push(1);
-  auto task = worker.post([&] { order.push_back(-1); });
-  gate.set_value();
+  HeldWorker held(0);
+  held.worker.push(1);
+  auto task = held.worker.post([&] { held.seen.push_back(-1); });
+  held.letGo();
   task.get();
-  done.get_future().get();
-  EXPECT_EQ(order, (std::vector<int>{0, -1, 1}));
+  EXPECT_EQ(held.seen, (std::vector<int>{0, -1, 1}));
 }
 
 TEST(Worker, ATaskThatNeverRunsBreaksItsPromise) {

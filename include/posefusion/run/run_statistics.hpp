@@ -58,7 +58,7 @@ class RunStatistics {
   void addTime(const char* stage, double ms);
 
   /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion,
-  /// tracking_and_fusion, their sum, loop_closing (what loops cost the mapping thread),
+  /// tracking_and_fusion, their sum, loop_closing (what loops cost the tracking thread),
   /// loop_waiting (for answers), and what addTime() was told.
   std::map<std::string, StageTime> stages() const;
 

@@ -66,7 +66,7 @@ class LoopExchange {
   /// where the answers tell.
   const std::vector<double>& verificationMs() const { return verification_ms_; }
 
-  /// How long answers were waited for in all (ms); live, nobody waits.
+  /// Total time spent waiting for answers (ms); about 0 with AnswerTime::when_ready.
   double waitedMs() const { return waited_ms_; }
 
   /// Questions that were given up.
