@@ -39,21 +39,24 @@ class Motions {
     });
   }
 
+  /// Whether the correction of any surfel of a block is not the identity.
+  bool moves(const SurfelBlock& block) const {
+    if (isOld(block)) return false;
+    const auto& created = block.surfels.created;
+    std::size_t k = 0;
+    return std::any_of(created.begin(), created.end(), [&](std::int32_t frame) {
+      return moves_[k = find({block.fragment, frame}, k)] != 0;
+    });
+  }
+
   /// Moves the surfels of a block whose correction is not the identity.
-  void apply(SurfelBlock& block, std::vector<char>& moved) const {
-    if (isOld(block)) return;
-    SurfelArrays& s = block.surfels;
-    std::size_t k = 0;  // where the search begins: neighbours are mostly of one frame
+  void apply(SurfelArrays& s, int fragment) const {
+    std::size_t k = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
-      const Origin origin(block.fragment, s.created[i]);
-      if (origins_[k] != origin) {
-        const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
-        k = static_cast<std::size_t>(found - origins_.begin());
-      }
+      k = find({fragment, s.created[i]}, k);
       if (moves_[k] == 0) continue;
       motions_[k].point(s.x[i], s.y[i], s.z[i], s.x[i], s.y[i], s.z[i]);
       motions_[k].direction(s.nx[i], s.ny[i], s.nz[i], s.nx[i], s.ny[i], s.nz[i]);
-      moved[i] = 1;
     }
   }
 
@@ -65,8 +68,16 @@ class Motions {
   }
 
   using Origin = std::pair<int, std::int32_t>;  // fragment and frame
-  std::map<int, std::int32_t> first_moved_;     // of each fragment
-  std::vector<Origin> origins_;                 // ascending, and for each:
+
+  /// Where its motion is. `last`: of the surfel before, which mostly is of the same frame.
+  std::size_t find(const Origin& origin, std::size_t last) const {
+    if (origins_[last] == origin) return last;
+    const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
+    return static_cast<std::size_t>(found - origins_.begin());
+  }
+
+  std::map<int, std::int32_t> first_moved_;  // of each fragment
+  std::vector<Origin> origins_;              // ascending, and for each:
   std::vector<RigidMotion> motions_;
   std::vector<char> moves_;
 };
@@ -76,8 +87,9 @@ class Motions {
 void deform(SurfelMap& map, const Deformation& deformation) {
   if (deformation.isIdentity()) return;
   const Motions motions(map, deformation);
-  map.move([&](SurfelBlock& block, std::vector<char>& moved) { motions.apply(block, moved); },
-           [&](int fragment) { return deformation.fragmentAfter(fragment); });
+  map.move({[&](const SurfelBlock& block) { return motions.moves(block); },
+            [&](SurfelArrays& surfels, int fragment) { motions.apply(surfels, fragment); },
+            [&](int fragment) { return deformation.fragmentAfter(fragment); }});
 }
 
 }  // namespace pf

@@ -81,13 +81,12 @@ float mostWeight(const DepthStep& step, double z_m) {
                     : std::numeric_limits<float>::max();
 }
 
-void correct(SurfelBlock& block, const DepthStep& step, const Origins& origins,
-             const RayMotion& motion, std::vector<char>& moved) {
-  SurfelArrays& s = block.surfels;
+void correct(SurfelArrays& s, int fragment, const DepthStep& step, const Origins& origins,
+             const RayMotion& motion) {
   const Keyframe* keyframe = nullptr;
   Eigen::Isometry3d T_camera_map = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const Keyframe* origin = origins.at(block.fragment, s.created[i]);
+    const Keyframe* origin = origins.at(fragment, s.created[i]);
     if (origin == nullptr) return;
     if (origin != keyframe) T_camera_map = origin->T_map_camera.inverse();
     keyframe = origin;
@@ -105,7 +104,6 @@ void correct(SurfelBlock& block, const DepthStep& step, const Origins& origins,
     s.nz[i] = normal.z();
     s.radius[i] *= static_cast<float>(factor);
     s.weight[i] = std::min(s.weight[i], mostWeight(step, p.z()));
-    moved[i] = 1;
   }
 }
 
@@ -114,9 +112,10 @@ void correct(SurfelBlock& block, const DepthStep& step, const Origins& origins,
 void correctDepth(SurfelMap& map, const DepthStep& step) {
   const Origins origins(step.keyframes);
   const RayMotion motion(step.field, step.camera);
-  map.move([&](SurfelBlock& block,
-               std::vector<char>& moved) { correct(block, step, origins, motion, moved); },
-           [](int fragment) { return fragment; });
+  map.move({[&](const SurfelBlock& block) { return block.surfels.size() > 0; },
+            [&](SurfelArrays& surfels, int fragment) {
+              correct(surfels, fragment, step, origins, motion);
+            }});
 }
 
 }  // namespace pf

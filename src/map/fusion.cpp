@@ -132,21 +132,24 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
                             reachOf(frame.sensor, s.seen_m, s.people_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);
+  parallelFor(s.visible.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) map.blocks_.change(s.visible[k]);
+  });
   const SurfelUpdate update(frame, T_map_camera, options, map, s.evidence);
   std::vector<SurfelUpdate::Result> results(ranges.size());
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      results[k] = update.update(ranges[k], map.blocks_[ranges[k].block].surfels);
+      results[k] = update.update(ranges[k], map.blocks_.change(ranges[k].block).surfels);
     }
   });
   parallelFor(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      update.contradict(results[k], map.blocks_[ranges[k].block].surfels);
+      update.contradict(results[k], map.blocks_.change(ranges[k].block).surfels);
     }
   });
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     counts.merged += results[k].merged;
-    SurfelBlock& block = map.blocks_[ranges[k].block];
+    SurfelBlock& block = map.blocks_.change(ranges[k].block);
     block.bounds.extend(results[k].moved);
     block.changed = map.frame();
   }
@@ -165,18 +168,19 @@ std::size_t Fuser::clean(SurfelMap& map) {
       deterministicSum<std::size_t>(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
         for (std::size_t k = begin; k < end; ++k) {
-          SurfelBlock& block = map.blocks_[blocks[k]];
-          const SurfelArrays& s = block.surfels;
+          const SurfelArrays& s = map.blocks_[blocks[k]].surfels;
           std::size_t dead = 0, unstable = 0;
           for (std::size_t i = 0; i < s.size(); ++i) {
             dead += map.isDead(s, i) ? 1 : 0;
             unstable += map.isStable(s, i) ? 0 : 1;
           }
-          block.any_unstable = unstable > 0;
+          if (map.blocks_[blocks[k]].any_unstable != (unstable > 0)) {
+            map.blocks_.change(blocks[k]).any_unstable = unstable > 0;
+          }
           const bool turn =
               map.frame() % kCompactionFrames == static_cast<int>(blocks[k] % kCompactionFrames);
           if (dead * kCompactionShare <= s.size() && !(turn && dead > 0)) continue;
-          count += map.removeFrom(block, [&](const SurfelArrays& surfels, std::size_t i) {
+          count += map.removeFrom(blocks[k], [&](const SurfelArrays& surfels, std::size_t i) {
             return map.isDead(surfels, i);
           });
         }

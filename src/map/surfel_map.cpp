@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -88,7 +87,7 @@ std::uint32_t SurfelMap::blockAt(const Cell& cell) {
   }
   memory_ += sizeof(SurfelBlock);
   const auto block = static_cast<std::uint32_t>(blocks_.size());
-  blocks_.emplace_back().fragment = cell.fragment;
+  blocks_.append().fragment = cell.fragment;
   index_.emplace(cell, block);
   return block;
 }
@@ -131,12 +130,12 @@ std::size_t SurfelMap::add(const SurfelArrays& s, int fragment) {
   }
   std::size_t added = 0;
   for (Group& g : groups) {
-    g.members.resize(makeRoom(blocks_[g.block], g.members.size()));
+    g.members.resize(makeRoom(blocks_.change(g.block), g.members.size()));
     added += g.members.size();
   }
   parallelFor(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      SurfelBlock& block = blocks_[groups[k].block];
+      SurfelBlock& block = blocks_.change(groups[k].block);
       const std::size_t first = block.surfels.size();
       block.surfels.append(s, groups[k].members.data(), groups[k].members.size());
       fit(block.surfels, first, block);
@@ -160,44 +159,34 @@ void SurfelMap::keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& bl
     smaller.assign(array.begin(), array.end());
     array.swap(smaller);
   });
+  refit(block);
+}
+
+/// The surfels have changed.
+void SurfelMap::refit(SurfelBlock& block) const {
   block.changed = frame_;
   block.bounds.setEmpty();
   block.largest_radius = 0;
   fit(block.surfels, 0, block);
 }
 
-void SurfelMap::move(const Mover& mover, const std::function<int(int)>& fragment_after) {
-  std::vector<Cell> cells(blocks_.size());
-  for (const auto& [cell, block] : index_) cells[block] = cell;
-  std::vector<SurfelArrays> gone(blocks_.size());  // out of each block
+void SurfelMap::move(const Mover& mover) {
   parallelFor(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      SurfelBlock& block = blocks_[b];
-      const SurfelArrays& s = block.surfels;
-      const int fragment = fragment_after(block.fragment);
-      std::vector<char> moved(s.size(), 0);
-      mover(block, moved);
-      const bool any = fragment != block.fragment ||
-                       std::find(moved.begin(), moved.end(), char{1}) != moved.end();
-      if (!any) continue;
-      std::vector<std::uint32_t> stay, leave;
-      for (std::size_t i = 0; i < s.size(); ++i) {
-        const bool left =
-            fragment != block.fragment ||
-            (moved[i] != 0 && !(cellAt(fragment, s.x[i], s.y[i], s.z[i]) == cells[b]));
-        (left ? leave : stay).push_back(static_cast<std::uint32_t>(i));
-      }
-      gone[b].append(s, leave.data(), leave.size());
-      keepOnly(stay, block);
+      const int fragment = mover.fragment_after(blocks_[b].fragment);
+      const bool moves = mover.moves(blocks_[b]);
+      if (!moves && fragment == blocks_[b].fragment) continue;
+      SurfelBlock& block = blocks_.change(b);
+      if (moves) mover.move(block.surfels, block.fragment);
+      block.fragment = fragment;
+      refit(block);
     }
   });
-  countMemory();
-  std::map<int, SurfelArrays> all;  // by their new fragment
-  for (std::size_t b = 0; b < gone.size(); ++b) {
-    all[fragment_after(blocks_[b].fragment)].append(gone[b]);
-    gone[b] = {};
+  // Where a fragment has gone, new surfels come into new blocks: its cubes are not those.
+  for (auto entry = index_.begin(); entry != index_.end();) {
+    const int fragment = entry->first.fragment;
+    entry = mover.fragment_after(fragment) == fragment ? std::next(entry) : index_.erase(entry);
   }
-  for (const auto& [fragment, surfels] : all) add(surfels, fragment);
 }
 
 void SurfelMap::countMemory() {

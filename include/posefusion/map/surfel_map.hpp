@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -13,26 +12,17 @@
 #include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/pace.hpp"
 #include "posefusion/map/config.hpp"
+#include "posefusion/map/shared_blocks.hpp"
 #include "posefusion/map/surfels.hpp"
 
 namespace pf {
 
-/// The surfels that were made in one cube of a fragment. Fusion may move them a little beyond its
-/// faces.
-struct SurfelBlock {
-  int fragment = kFirstFragment;
-  SurfelArrays surfels;        ///< in the order in which they were made
-  Eigen::AlignedBox3f bounds;  ///< holds all centres (m, map frame of the fragment)
-  float largest_radius = 0;    ///< m
-  bool any_unstable = false;   ///< false: all are stable
-  int changed = -1;            ///< frame of the last change (or somewhat later): what to save
-};
-
 /// The surfels, in blocks, and the frame clock. A frame touches only the blocks in view, so that
 /// its cost does not grow with the map. Fragments share the clock and the memory, no block: what
 /// works at a place works in one of them. Has one owner (the mapper); changed by Fuser, add(),
-/// removeIf() and move(). The order of blocks and of surfels in them depends neither on threads
-/// nor on hashing.
+/// removeIf() and move(). A copy shares the blocks until either changes them (SharedBlocks), so
+/// that it costs next to nothing, and belongs to any thread. The order of blocks and of surfels in
+/// them depends neither on threads nor on hashing.
 class SurfelMap {
  public:
   /// Side of a block (m): about 5,000 surfels of a surface seen at 2 m with half resolution. Much
@@ -59,7 +49,7 @@ class SurfelMap {
   }
 
   /// In the order in which they were made; a block may be empty.
-  const std::deque<SurfelBlock>& blocks() const { return blocks_; }
+  const SharedBlocks& blocks() const { return blocks_; }
   std::size_t size() const;
   std::size_t stableCount() const;
 
@@ -112,7 +102,7 @@ class SurfelMap {
   template <typename Doomed>
   std::size_t removeIf(const Doomed& doomed) {
     std::size_t removed = 0;
-    for (SurfelBlock& block : blocks_) removed += removeFrom(block, doomed);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) removed += removeFrom(i, doomed);
     countMemory();
     return removed;
   }
@@ -120,19 +110,22 @@ class SurfelMap {
   /// Removes what is in the fragments for which doomed(fragment) holds.
   template <typename Doomed>
   void removeFragments(const Doomed& doomed) {
-    for (SurfelBlock& block : blocks_) {
-      if (doomed(block.fragment)) keepOnly({}, block);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      if (doomed(blocks_[i].fragment)) keepOnly({}, blocks_.change(i));
     }
     countMemory();
   }
 
-  /// What moves the surfels of a block: marks those that it moved.
-  using Mover = std::function<void(SurfelBlock& block, std::vector<char>& moved)>;
+  /// How blocks are moved: whether anything in a block moves, and what moves it.
+  struct Mover {
+    std::function<bool(const SurfelBlock&)> moves;
+    std::function<void(SurfelArrays&, int fragment)> move;
+    std::function<int(int)> fragment_after = [](int fragment) { return fragment; };
+  };
 
-  /// Moves surfels, block by block in parallel, then takes those that left the cube of their block,
-  /// or whose fragment becomes another, into the blocks where they are now; as in add(), what no
-  /// memory is left for is refused and counted. Blocks of which nothing moved keep all their bits.
-  void move(const Mover& mover, const std::function<int(int)>& fragment_after);
+  /// Moves surfels, block by block in parallel, and takes fragments into others. All stay in their
+  /// blocks, wherever those lie then, and in their order. What does not move keeps all its bits.
+  void move(const Mover& mover);
 
   /// Memory (bytes) that the blocks hold, used or reserved; never above memory_limit_mb.
   std::size_t memory() const { return memory_; }
@@ -176,14 +169,15 @@ class SurfelMap {
   void countMemory();
 
   template <typename Doomed>
-  std::size_t removeFrom(SurfelBlock& block, const Doomed& doomed) const;
+  std::size_t removeFrom(std::size_t block, const Doomed& doomed);
   /// Keeps the surfels named (ascending), gives memory back and fits the bounds.
   void keepOnly(const std::vector<std::uint32_t>& kept, SurfelBlock& block) const;
+  void refit(SurfelBlock& block) const;
 
   MapConfig config_;
   DepthSensor sensor_;
   float block_side_m_;
-  std::deque<SurfelBlock> blocks_;  // a deque moves none when it grows
+  SharedBlocks blocks_;
   std::unordered_map<Cell, std::uint32_t, CellHash> index_;
   int frame_ = -1;
   // At the pace of the last frame:
@@ -195,14 +189,15 @@ class SurfelMap {
 };
 
 template <typename Doomed>
-std::size_t SurfelMap::removeFrom(SurfelBlock& block, const Doomed& doomed) const {
+std::size_t SurfelMap::removeFrom(std::size_t block, const Doomed& doomed) {
   std::vector<std::uint32_t> kept;
-  const std::size_t size = block.surfels.size();
+  const SurfelArrays& surfels = blocks_[block].surfels;
+  const std::size_t size = surfels.size();
   kept.reserve(size);
   for (std::size_t i = 0; i < size; ++i) {
-    if (!doomed(block.surfels, i)) kept.push_back(static_cast<std::uint32_t>(i));
+    if (!doomed(surfels, i)) kept.push_back(static_cast<std::uint32_t>(i));
   }
-  if (kept.size() < size) keepOnly(kept, block);
+  if (kept.size() < size) keepOnly(kept, blocks_.change(block));
   return size - kept.size();
 }
 
