@@ -57,6 +57,30 @@ TEST(Layers, OtherFragmentsHaveNoneInCommon) {
   EXPECT_EQ(removeYoungerLayers(map), younger.size());
 }
 
+TEST(Layers, OfSomeBlocksThoseThatTheyHaveWithAnyOther) {
+  SurfelArrays older, younger;
+  addWall(older, 2.0F, 10);
+  addWall(younger, 2.03F, 500);
+  for (const int lower : {0, 1}) {
+    SurfelMap map{MapConfig{}};
+    map.restore({{0, lower == 0 ? older : younger}}, 1000);
+    const auto first = static_cast<std::uint32_t>(map.blocks().size());
+    // Beside each other in the same cubes: moved there, as a correction does it.
+    map.add(lower == 0 ? younger : older, 1);
+    map.move({[](const SurfelBlock&) { return false; }, [](SurfelArrays&, int) {},
+              [](int) { return 0; }},
+             allBlocks(map));
+    ASSERT_GT(map.blocks().size(), first);
+    SurfelMap named = map, all = map;
+    std::vector<std::uint32_t> of_second = allBlocks(map);
+    of_second.erase(of_second.begin(), of_second.begin() + first);
+    EXPECT_EQ(removeYoungerLayers(named, {}), 0U);
+    EXPECT_EQ(removeYoungerLayers(named, of_second), younger.size()) << lower;
+    EXPECT_EQ(removeYoungerLayers(all), younger.size());
+    EXPECT_EQ(named.collect().x, all.collect().x);
+  }
+}
+
 TEST(Layers, WhatReachesBeyondTheOlderStays) {
   SurfelArrays surfels;
   addWall(surfels, 2.0F, 10);

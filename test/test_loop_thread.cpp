@@ -186,6 +186,7 @@ TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
   loop.T_from_to.translation().x() += 0.03;  // enough to be worth a correction
   answer.loops.push_back(loop);
   mapper->take(answer);
+  mapper->settle();
   ASSERT_EQ(mapper->backEnd().counts().accepted, 1U);
   closer->questions.clear();
   for (int i = 0; i < kCovered; ++i) see(kMapped - 1, true);

@@ -91,6 +91,8 @@ TEST_F(MapperCalibrationTest, WhatIsLearnedComesIntoTheMapItsKeyframesAndTheFram
   const cv::Mat picture = learns.keyframeViews().front().depth_mm.clone();
   const int corrections = learns.backEnd().graph().version();
   learns.take(learned(learns));
+  EXPECT_EQ(learns.depthVersion(), 0) << "what it wants of the map is still to be prepared";
+  learns.settle();
   EXPECT_EQ(learns.depthVersion(), 1);
   EXPECT_EQ(learns.backEnd().graph().version(), corrections + 1);
   EXPECT_LT(apart_m(learns, straight), 0.4 * before_m);
@@ -106,8 +108,10 @@ TEST_F(MapperCalibrationTest, WhatWasLearnedOfDepthAsItWasBeforeIsNotTakenTwice)
   run(mapper);
   const LoopAnswer answer = learned(mapper);
   mapper.take(answer);
+  mapper.settle();
   const SurfelArrays once = mapper.map().collect();
   mapper.take(answer);
+  mapper.settle();
   EXPECT_EQ(mapper.depthVersion(), 1);
   EXPECT_EQ(mapper.map().collect().z, once.z);
 }

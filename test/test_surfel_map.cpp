@@ -43,6 +43,46 @@ TEST(SurfelMap, HoldsEachSurfelOnceWithinTheBoundsOfItsBlock) {
   }
 }
 
+/// Moves all surfels of some blocks by a metre.
+void moveByAMetre(SurfelMap& map, const std::vector<std::uint32_t>& blocks) {
+  map.move({[](const SurfelBlock&) { return true; },
+            [](SurfelArrays& s, int) {
+              for (float& x : s.x) x += 1.0F;
+            }},
+           blocks);
+}
+
+TEST(SurfelMap, ACorrectedCopyIsTakenUpButForWhatChangedMeanwhile) {
+  SurfelMap map = mapOf(cloud(2000, 3));
+  map.advance();
+  map.advance();
+  map.add(cloud(50, 0.2F, 4));  // in view: changed last
+  const SurfelMap first = map;
+  SurfelMap corrected = map.resting(1);
+  const SurfelMap before = corrected;
+  EXPECT_LT(corrected.size(), map.size()) << "without what a frame would change next";
+  moveByAMetre(corrected, allBlocks(corrected));
+  map.advance();
+  map.add(cloud(300, 6, 5));  // meanwhile
+  const std::size_t size = map.size();
+  const std::vector<std::uint32_t> rest = map.takeUp(before, corrected);
+  EXPECT_GT(rest.size(), 0U);
+  EXPECT_LT(rest.size(), map.blocks().size());
+  moveByAMetre(map, rest);
+  EXPECT_EQ(map.size(), size);
+  for (std::size_t i = 0; i < first.blocks().size(); ++i) {
+    const SurfelArrays &old = first.blocks()[i].surfels, &now = map.blocks()[i].surfels;
+    ASSERT_GE(now.size(), old.size());
+    for (std::size_t k = 0; k < old.size(); ++k) EXPECT_EQ(now.x[k], old.x[k] + 1.0F);
+    EXPECT_TRUE(old.size() == 0 || map.blocks()[i].changed == map.frame()) << "it is to be saved";
+  }
+  std::size_t held = 0;
+  for (const SurfelBlock& block : map.blocks()) {
+    held += sizeof(SurfelBlock) + block.surfels.x.capacity() * SurfelArrays::bytesPerSurfel();
+  }
+  EXPECT_EQ(map.memory(), held);
+}
+
 TEST(SurfelMap, FragmentsShareNoBlockAndAreRestored) {
   SurfelMap map = mapOf(cloud(2000, 3));
   map.add(cloud(1000, 3, 4), 2);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "posefusion/core/se3.hpp"
 
@@ -43,6 +44,12 @@ Eigen::Isometry3d Deformation::at(std::int32_t map_frame, int fragment) const {
   const double share = (static_cast<double>(map_frame) - before->map_frame) / span;
   const Vector6d step = logSe3(before->correction.inverse() * after->correction);
   return before->correction * expSe3(share * step);
+}
+
+Deformation Deformation::with(const std::vector<Node>& more) const {
+  std::vector<Node> all = nodes_;
+  all.insert(all.end(), more.begin(), more.end());
+  return Deformation(version_, std::move(all), join_);
 }
 
 std::int32_t Deformation::firstMoved(int fragment) const {

@@ -200,6 +200,26 @@ bool PoseGraph::isMet(const PoseConstraint& loop) const {
                   config_.loop_sigma_m, config_.loop_sigma_rad);
 }
 
+ClosedLoops PoseGraph::close(const std::vector<PoseConstraint>& loops) {
+  ClosedLoops closed;
+  const auto take = [&](GraphResult result) {
+    closed.refused += result.refused.size();
+    if (!result.accepted) return false;
+    ++closed.accepted;
+    closed.deformations.push_back(std::move(result.deformation));
+    return true;
+  };
+  for (const PoseConstraint& loop : loops) {
+    if (fragmentOf(loop.from) == fragmentOf(loop.to)) {
+      addLoop(loop);
+    } else if (take(joinFragment(loop))) {
+      ++closed.joined;
+    }
+  }
+  take(optimise());
+  return closed;
+}
+
 GraphResult PoseGraph::optimise() {
   std::vector<PoseConstraint> loops = std::exchange(waiting_, {});
   const bool all_met =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraints that hold, measured again: by better depth, or by pictures in place of tracking.
 #include <algorithm>
+#include <utility>
 
 #include "graph_attempt.hpp"
 
@@ -58,13 +59,18 @@ GraphResult PoseGraph::retrack(const PoseConstraint& step) {
   *old = checkedLoop(step);
   old->kind = ConstraintKind::odometry;
   const Eigen::Isometry3d T_new_old = T_map_to * to.T_map_camera.inverse();
-  Attempt moved;
-  moved.keyframes = keyframes_;
+  std::vector<Deformation::Node> nodes = {{to.map_frame, T_new_old, false, to.fragment}};
+  for (int i = step.to - 1; i >= 0 && nodes.size() < 2; --i) {
+    const Keyframe& before = keyframes_[static_cast<std::size_t>(i)];
+    if (before.fragment != to.fragment) continue;
+    nodes.push_back({before.map_frame, Eigen::Isometry3d::Identity(), i == step.from, to.fragment});
+  }
   for (std::size_t i = static_cast<std::size_t>(step.to); i < keyframes_.size(); ++i) {
-    Keyframe& k = moved.keyframes[i];
+    Keyframe& k = keyframes_[i];
     if (k.fragment == to.fragment) k.T_map_camera = orthonormalised(T_new_old * k.T_map_camera);
   }
-  accept(moved, result);
+  result.accepted = true;
+  result.deformation = Deformation(++version_, std::move(nodes));
   return result;
 }
 

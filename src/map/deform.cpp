@@ -15,8 +15,10 @@ namespace {
 /// The corrections of all frames that made a surfel.
 class Motions {
  public:
-  Motions(const SurfelMap& map, const Deformation& deformation) {
-    for (const SurfelBlock& block : map.blocks()) {
+  Motions(const SurfelMap& map, const Deformation& deformation,
+          const std::vector<std::uint32_t>& blocks) {
+    for (const std::uint32_t number : blocks) {
+      const SurfelBlock& block = map.blocks()[number];
       const auto [first, is_new] = first_moved_.try_emplace(block.fragment, 0);
       if (is_new) first->second = deformation.firstMoved(block.fragment);
       if (isOld(block)) continue;
@@ -85,11 +87,17 @@ class Motions {
 }  // namespace
 
 void deform(SurfelMap& map, const Deformation& deformation) {
+  deform(map, deformation, allBlocks(map));
+}
+
+void deform(SurfelMap& map, const Deformation& deformation,
+            const std::vector<std::uint32_t>& blocks) {
   if (deformation.isIdentity()) return;
-  const Motions motions(map, deformation);
+  const Motions motions(map, deformation, blocks);
   map.move({[&](const SurfelBlock& block) { return motions.moves(block); },
             [&](SurfelArrays& surfels, int fragment) { motions.apply(surfels, fragment); },
-            [&](int fragment) { return deformation.fragmentAfter(fragment); }});
+            [&](int fragment) { return deformation.fragmentAfter(fragment); }},
+           blocks);
 }
 
 }  // namespace pf

@@ -110,12 +110,17 @@ void correct(SurfelArrays& s, int fragment, const DepthStep& step, const Origins
 }  // namespace
 
 void correctDepth(SurfelMap& map, const DepthStep& step) {
+  correctDepth(map, step, allBlocks(map));
+}
+
+void correctDepth(SurfelMap& map, const DepthStep& step, const std::vector<std::uint32_t>& blocks) {
   const Origins origins(step.keyframes);
   const RayMotion motion(step.field, step.camera);
   map.move({[&](const SurfelBlock& block) { return block.surfels.size() > 0; },
             [&](SurfelArrays& surfels, int fragment) {
               correct(surfels, fragment, step, origins, motion);
-            }});
+            }},
+           blocks);
 }
 
 }  // namespace pf

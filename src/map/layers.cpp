@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <vector>
 
@@ -17,20 +18,58 @@ namespace {
 constexpr float kSameFacing = 0.8F;  // cosine
 constexpr std::size_t kGrain = 4096;
 
-/// The stable surfels of a fragment, and where each is among all of the map.
-struct StableSurfels {
-  StableSurfels(const SurfelMap& map, int fragment) {
-    std::size_t index = 0;
-    for (const SurfelBlock& block : map.blocks()) {
-      if (block.fragment == fragment) add(map, block.surfels, index);
-      index += block.surfels.size();
+/// Which blocks of a fragment layers are looked for in: those named, and those around them.
+class Region {
+ public:
+  Region(const SurfelMap& map, int fragment, const std::vector<char>& is_named)
+      : map_(map), fragment_(fragment), is_named_(is_named) {
+    for (std::size_t i = 0; i < map.blocks().size(); ++i) {
+      if (is_named[i] == 0 || !isOfFragment(i)) continue;
+      named_.push_back(map.blocks()[i].bounds);
+      reach_ = std::max(reach_, kMostLayer_m + map.blocks()[i].largest_radius);
     }
   }
 
-  void add(const SurfelMap& map, const SurfelArrays& s, std::size_t first) {
+  bool isEmpty() const { return named_.empty(); }
+
+  bool has(std::size_t block) const {
+    if (!isOfFragment(block)) return false;
+    if (is_named_[block] != 0) return true;
+    const Eigen::AlignedBox3f& bounds = map_.blocks()[block].bounds;
+    const float reach = std::max(reach_, kMostLayer_m + map_.blocks()[block].largest_radius);
+    return std::any_of(named_.begin(), named_.end(), [&](const Eigen::AlignedBox3f& named) {
+      return bounds.squaredExteriorDistance(named) <= reach * reach;
+    });
+  }
+
+ private:
+  bool isOfFragment(std::size_t block) const {
+    return map_.blocks()[block].fragment == fragment_ && map_.blocks()[block].surfels.size() > 0;
+  }
+
+  const SurfelMap& map_;
+  int fragment_;
+  const std::vector<char>& is_named_;
+  std::vector<Eigen::AlignedBox3f> named_;
+  float reach_ = 0;
+};
+
+/// The stable surfels of a region, and where each is among all of the map.
+struct StableSurfels {
+  StableSurfels(const SurfelMap& map, const Region& region, const std::vector<char>& named) {
+    std::size_t index = 0;
+    for (std::size_t i = 0; i < map.blocks().size(); ++i) {
+      const SurfelArrays& surfels = map.blocks()[i].surfels;
+      if (region.has(i)) add(map, surfels, index, named[i]);
+      index += surfels.size();
+    }
+  }
+
+  void add(const SurfelMap& map, const SurfelArrays& s, std::size_t first, char named) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       if (!map.isStable(s, i)) continue;
       indices.push_back(first + i);
+      is_named.push_back(named);
       positions.emplace_back(s.x[i], s.y[i], s.z[i]);
       normals.emplace_back(s.nx[i], s.ny[i], s.nz[i]);
       radii.push_back(s.radius[i]);
@@ -50,21 +89,24 @@ struct StableSurfels {
   NormalLine lineOf(std::size_t i) const { return {positions[i], normals[i]}; }
 
   std::vector<std::size_t> indices;
+  std::vector<char> is_named;  ///< in one of the blocks that were asked about
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<float> radii;
   std::vector<std::int32_t> created;
   float largest_radius = 0;
 };
 
-/// Marks those of a fragment that are to go.
-void findYoungerLayers(const SurfelMap& map, int fragment, std::vector<char>& doomed) {
-  const StableSurfels stable(map, fragment);
+/// Marks those of a region that are to go.
+void findYoungerLayers(const StableSurfels& stable, std::vector<char>& doomed) {
   const PointGrid grid(stable.positions);
   parallelFor(stable.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       char& gone = doomed[stable.indices[i]];
       grid.visit(stable.lineOf(i).box(kMostLayer_m, stable.largest_radius), [&](std::size_t k) {
-        if (stable.created[k] < stable.created[i] && gone == 0) gone = stable.areLayers(i, k);
+        const bool concerns = stable.is_named[i] != 0 || stable.is_named[k] != 0;
+        if (concerns && stable.created[k] < stable.created[i] && gone == 0) {
+          gone = stable.areLayers(i, k);
+        }
       });
     }
   });
@@ -72,11 +114,19 @@ void findYoungerLayers(const SurfelMap& map, int fragment, std::vector<char>& do
 
 }  // namespace
 
-std::size_t removeYoungerLayers(SurfelMap& map) {
+std::size_t removeYoungerLayers(SurfelMap& map) { return removeYoungerLayers(map, allBlocks(map)); }
+
+std::size_t removeYoungerLayers(SurfelMap& map, const std::vector<std::uint32_t>& blocks) {
+  std::vector<char> is_named(map.blocks().size(), 0), doomed(map.size(), 0);
   std::set<int> fragments;
-  for (const SurfelBlock& block : map.blocks()) fragments.insert(block.fragment);
-  std::vector<char> doomed(map.size(), 0);
-  for (const int fragment : fragments) findYoungerLayers(map, fragment, doomed);
+  for (const std::uint32_t block : blocks) {
+    is_named[block] = 1;
+    fragments.insert(map.blocks()[block].fragment);
+  }
+  for (const int fragment : fragments) {
+    const Region region(map, fragment, is_named);
+    if (!region.isEmpty()) findYoungerLayers(StableSurfels(map, region, is_named), doomed);
+  }
   std::size_t index = 0;  // surfels come in the order of forEachSurfel()
   return map.removeIf([&](const SurfelArrays&, std::size_t) { return doomed[index++] != 0; });
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -170,13 +171,14 @@ void SurfelMap::refit(SurfelBlock& block) const {
   fit(block.surfels, 0, block);
 }
 
-void SurfelMap::move(const Mover& mover) {
-  parallelFor(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const int fragment = mover.fragment_after(blocks_[b].fragment);
-      const bool moves = mover.moves(blocks_[b]);
-      if (!moves && fragment == blocks_[b].fragment) continue;
-      SurfelBlock& block = blocks_.change(b);
+void SurfelMap::move(const Mover& mover, const std::vector<std::uint32_t>& blocks) {
+  parallelFor(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const SurfelBlock& seen = blocks_[blocks[k]];
+      const int fragment = mover.fragment_after(seen.fragment);
+      const bool moves = mover.moves(seen);
+      if (!moves && fragment == seen.fragment) continue;
+      SurfelBlock& block = blocks_.change(blocks[k]);
       if (moves) mover.move(block.surfels, block.fragment);
       block.fragment = fragment;
       refit(block);
@@ -187,6 +189,33 @@ void SurfelMap::move(const Mover& mover) {
     const int fragment = entry->first.fragment;
     entry = mover.fragment_after(fragment) == fragment ? std::next(entry) : index_.erase(entry);
   }
+}
+
+SurfelMap SurfelMap::resting(int since_frame) const {
+  SurfelMap copy(config_, block_side_m_, sensor_);
+  copy.blocks_ = blocks_;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].changed >= since_frame) copy.blocks_.drop(i);
+  }
+  copy.frame_ = frame_;
+  copy.worth_ = worth_;
+  copy.active_frames_ = active_frames_;
+  copy.unstable_frames_ = unstable_frames_;
+  return copy;
+}
+
+std::vector<std::uint32_t> SurfelMap::takeUp(const SurfelMap& before, SurfelMap& corrected) {
+  std::vector<std::uint32_t> changed;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (!blocks_.isShared(i, before.blocks_)) {
+      changed.push_back(static_cast<std::uint32_t>(i));
+    } else if (!corrected.blocks_.isShared(i, before.blocks_)) {
+      blocks_.swap(i, corrected.blocks_);
+      blocks_.change(i).changed = frame_;
+    }
+  }
+  countMemory();
+  return changed;
 }
 
 void SurfelMap::countMemory() {

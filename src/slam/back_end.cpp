@@ -55,34 +55,11 @@ void BackEnd::record(std::int64_t stamp_ns, const MapPose& pose) {
   frames_.push_back({stamp_ns, {last->id, last->T_map_camera.inverse() * pose.T_map_camera}});
 }
 
-std::vector<Deformation> BackEnd::close(const std::vector<LoopConstraint>& loops) {
-  std::vector<Deformation> deformations;
-  const auto take = [&](GraphResult result) {
-    counts_.accepted += result.accepted ? 1 : 0;
-    counts_.refused += result.refused.size();
-    if (result.accepted) deformations.push_back(std::move(result.deformation));
-    return result.accepted;
-  };
-  const auto fragmentOf = [&](int keyframe) {
-    return graph_.keyframes().at(static_cast<std::size_t>(keyframe)).fragment;
-  };
-  for (const LoopConstraint& loop : loops) {
-    const PoseConstraint constraint{static_cast<int>(loop.from), static_cast<int>(loop.to),
-                                    loop.T_from_to, loop.covariance, ConstraintKind::loop};
-    if (fragmentOf(constraint.from) == fragmentOf(constraint.to)) {
-      graph_.addLoop(constraint);
-    } else if (take(graph_.joinFragment(constraint))) {
-      ++counts_.joined;
-    }
-  }
-  take(graph_.optimise());
-  return deformations;
-}
-
-Deformation BackEnd::remeasure(const std::vector<PoseConstraint>& constraints) {
-  GraphResult result = graph_.remeasure(constraints);
-  counts_.accepted += result.accepted ? 1 : 0;
-  return result.accepted ? std::move(result.deformation) : Deformation();
+std::vector<Deformation> BackEnd::takeUp(PoseGraph corrected, const ClosedLoops& closed) {
+  counts_.accepted += closed.accepted;
+  counts_.refused += closed.refused;
+  counts_.joined += closed.joined;
+  return graph_.takeUp(std::move(corrected), closed.deformations);
 }
 
 Deformation BackEnd::retrack(const PoseConstraint& step) {

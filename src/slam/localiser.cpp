@@ -225,8 +225,8 @@ void Localiser::move(const Eigen::Isometry3d& T_new_old, int fragment) {
   landmarks_.move(T_new_old);
 }
 
-void Localiser::correctDepth(const DepthField& step) {
-  previous_.depth_m = DepthCorrector(step).inMetres(previous_.depth_m, 1.0);
+void Localiser::correctDepth(DepthCorrector& step) {
+  previous_.depth_m = step.inMetres(previous_.depth_m, 1.0);
   landmarks_.clear();  // where they are seen now is not where they were
 }
 

@@ -2,8 +2,10 @@
 #include "posefusion/slam/loop_exchange.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
+#include "posefusion/core/parallel.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/slam/mapper.hpp"
 
@@ -19,15 +21,54 @@ void LoopExchange::serve(Mapper& mapper) {
     }
   }
   for (auto due = findDue(mapper); due != asked_.end(); due = findDue(mapper)) take(due, mapper);
+  correct(mapper);
   ++frame_;
+}
+
+/// Takes in the correction in work when it is due, and begins the next.
+void LoopExchange::correct(Mapper& mapper) {
+  if (correcting_.valid()) {
+    const bool is_due =
+        time_ == AnswerTime::after_lag
+            ? frame_ >= correcting_since_ + mapper.pace().framesIn(lag_s_)
+            : correcting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (!is_due) return;
+    takeCorrection(mapper);
+  }
+  auto correction = mapper.takeCorrection();
+  if (!correction) return;
+  correcting_since_ = frame_;
+  is_correction_void_ = false;
+  correcting_ = std::async(std::launch::async, [work = std::move(*correction)]() mutable {
+    return inOneThread([&] { return prepare(std::move(work)); });
+  });
+}
+
+void LoopExchange::takeCorrection(Mapper& mapper) {
+  Stopwatch watch;
+  try {
+    CorrectedMap corrected = correcting_.get();
+    waited_ms_ += watch.lapMs();
+    if (!is_correction_void_) mapper.take(corrected);
+    // A future keeps its work: what that holds goes with its end.
+    freeing_ = std::async(std::launch::async, [old = std::move(corrected)]() mutable {
+      const CorrectedMap gone = std::move(old);
+    });
+  } catch (...) {
+    if (!is_correction_void_) mapper.abandonCorrection();
+    throw;
+  }
 }
 
 void LoopExchange::finish(Mapper& mapper) {
   while (!asked_.empty()) take(asked_.begin(), mapper);
+  if (correcting_.valid()) takeCorrection(mapper);
+  mapper.settle();
 }
 
 void LoopExchange::reset() {
   asked_.clear();
+  is_correction_void_ = true;
   responder_->forget();
 }
 

@@ -151,6 +151,7 @@ void Mapper::setUse(MapUse use) {
     throw InputError("there is no map to localise in: nothing was mapped");
   }
   s.may_change = use == MapUse::extend;
+  if (!s.may_change) s.wanted = {};
 }
 
 const std::vector<KeyframeView>& Mapper::keyframeViews() const { return state_->views; }
@@ -205,6 +206,10 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.last_stamp_ns = kBeforeAll;
   s.back_end = BackEnd(s.config.graph);
   s.question.reset();
+  s.wanted = {};
+  s.wanted_steps.clear();
+  s.is_correcting = false;
+  s.unswept.clear();
   s.keyframes_moved = s.place_is_asked = s.closer_is_old = false;
   s.may_change = true;
   s.views.clear();

@@ -12,8 +12,6 @@
 namespace pf {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
-
 std::string textOf(const DepthCalibration& step) {
   char text[160];
   std::snprintf(text, sizeof text,
@@ -37,53 +35,65 @@ StaticFrame Mapper::State::corrected(const StaticFrame& input) {
 }
 
 /// Of its sensor's systematic error only what the calibration leaves is still to be reckoned with.
+DepthSensor Mapper::State::sensorWith(const std::optional<DepthCalibration>& known) const {
+  DepthSensor result = depthSensorOf(config);
+  if (!known || known->left_per_m <= 0) return result;
+  result.systematic_1_m = std::min(result.systematic_1_m, static_cast<float>(known->left_per_m));
+  return result;
+}
+
 void Mapper::State::use(std::optional<DepthCalibration> known) {
-  calibration = std::move(known);
+  const DepthField field = fieldOf(known);
+  use(std::move(known), DepthCorrector(field), DepthCorrector(field.inverse()));
   is_calibration_loaded = calibration.has_value();
-  const DepthField field = fieldOf(calibration);
-  corrector = DepthCorrector(field);
-  distorter = DepthCorrector(field.inverse());
-  sensor = depthSensorOf(config);
-  if (!calibration || calibration->left_per_m <= 0) return;
-  const auto left_1_m = static_cast<float>(calibration->left_per_m);
-  sensor.systematic_1_m = std::min(sensor.systematic_1_m, left_1_m);
+}
+
+/// `there`, `back`: to corrected depth and from it.
+void Mapper::State::use(std::optional<DepthCalibration> known, DepthCorrector there,
+                        DepthCorrector back) {
+  calibration = std::move(known);
+  corrector = std::move(there);
+  distorter = std::move(back);
+  sensor = sensorWith(calibration);
 }
 
 void Mapper::State::take(const LoopAnswer& answer) {
   if (!answer.calibration_doubt.empty()) last_calibration = answer.calibration_doubt;
   // Of depth as it was before, nothing more is to be learned.
-  if (answer.depth_version != depth_version || !may_change) return;
-  if (answer.calibration) improve(*answer.calibration);
-  if (answer.remeasured.empty()) return;
-  const std::vector<MapPose> before = back_end.keyframePoses();
-  follow({back_end.remeasure(answer.remeasured)}, before);
+  if (answer.depth_version != depth_version) return;
+  if (answer.calibration) wanted.depth = answer.calibration;
+  if (!answer.remeasured.empty()) wanted.remeasured = answer.remeasured;
 }
 
-/// One step of what is known of the camera.
-void Mapper::State::improve(const DepthCalibration& step) {
-  last_calibration = textOf(step);
-  DepthCalibration known = step;
-  known.camera = camera.withoutDistortion();
+/// One more step, as it is to be prepared.
+DepthImprovement Mapper::State::improvementBy(const DepthCalibration& learned) const {
+  DepthImprovement depth;
+  depth.learned = depth.known = learned;
+  depth.known.camera = camera.withoutDistortion();
   if (calibration) {
-    known.name = calibration->name;
-    known.field = calibration->field.then(step.field);
-    known.before_mm = calibration->before_mm;
+    depth.known.name = calibration->name;
+    depth.known.field = calibration->field.then(learned.field);
+    depth.known.before_mm = calibration->before_mm;
   }
-  use(std::move(known));
+  depth.step = {learned.field, frame.camera, {}, sensorWith(depth.known), learned.left_per_m};
+  depth.frame_size = {camera.width, camera.height};
+  depth.views = views;
+  return depth;
+}
+
+/// All that depth has made follows one more step.
+void Mapper::State::noteImproved(DepthImprovement& depth) {
+  last_calibration = textOf(depth.learned);
+  use(std::move(depth.known), std::move(depth.corrector), std::move(depth.distorter));
   is_calibration_loaded = false;
   ++depth_version;
-  correctDepthBy(step.field, step.left_per_m);
-  back_end.countCorrection();
   closer_is_old = constraints_are_old = true;
+  wanted.depth.reset();  // of depth as it was before
+  wanted.remeasured.clear();
 }
 
-/// Takes everything that depth has made to what it would be had it been corrected by more.
-void Mapper::State::correctDepthBy(const DepthField& step, double left_per_m) {
-  correctDepth(map, {step, frame.camera, back_end.graph().keyframes(), sensor, left_per_m});
-  DepthCorrector views_corrector(step);
-  for (KeyframeView& keyframe : views) {
-    keyframe.depth_mm = views_corrector.likeInput(keyframe.depth_mm, kMillimetre);
-  }
+/// All that depth has made was taken to what it would be had it been corrected by more.
+void Mapper::State::depthHasChanged(DepthCorrector& step) {
   localiser.correctDepth(step);
   showFrom({view.fragment, view.T_map_camera}, false);
   map_at_loss.reset();

@@ -100,7 +100,7 @@ void Mapper::State::placeFragment(const PlaceVerdict& seen) {
                kAlike_m, kAlike_rad);
   seen_at = place;
   frames_to_place = 0;  // the second answer soon
-  if (again) correct({place.constraint});
+  if (again) wanted.loops.push_back(place.constraint.asPoseConstraint());
 }
 
 }  // namespace pf

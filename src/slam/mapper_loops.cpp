@@ -3,8 +3,6 @@
 #include <utility>
 
 #include "mapper_state.hpp"
-#include "posefusion/map/deform.hpp"
-#include "posefusion/map/layers.hpp"
 
 namespace pf {
 namespace {
@@ -15,15 +13,6 @@ constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
 
 }  // namespace
-
-double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after) {
-  double largest = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const Eigen::Vector3d from = before[i].T_map_camera.translation();
-    largest = std::max(largest, (after[i].T_map_camera.translation() - from).norm());
-  }
-  return largest;
-}
 
 std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses) {
   std::vector<MapPose> chosen;
@@ -107,39 +96,6 @@ void Mapper::State::askForPlace() {
   place_is_stale = false;
 }
 
-void Mapper::State::correct(const std::vector<LoopConstraint>& loops) {
-  const std::vector<MapPose> before = back_end.keyframePoses();
-  follow(back_end.close(loops), before);
-}
-
-/// `before`: the poses of the keyframes before these corrections.
-void Mapper::State::follow(const std::vector<Deformation>& deformations,
-                           const std::vector<MapPose>& before) {
-  int where = fragment();
-  Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
-  bool moves = false, joins = false;
-  for (const Deformation& deformation : deformations) {
-    if (deformation.isIdentity()) continue;
-    moves = true;
-    joins |= deformation.joins();
-    T_new_old = deformation.at(map.frame(), where) * T_new_old;
-    where = deformation.fragmentAfter(where);
-    deform(map, deformation);
-  }
-  if (!moves) return;
-  // What joins nothing and moves no keyframe so far lays no pass over another.
-  if (joins || largestShiftM(before, back_end.keyframePoses()) > kLeastLayer_m) {
-    removeYoungerLayers(map);
-  }
-  localiser.move(T_new_old, where);
-  const bool is_fused = view.stamp_ns == last_stamp_ns;
-  showFrom({where, T_new_old * view.T_map_camera}, is_fused);
-  keyframes_moved = true;
-  map_at_loss.reset();
-  seen_at.reset();
-  place_is_stale = true;
-}
-
 std::optional<LoopQuestion> Mapper::takeQuestion() {
   State& s = *state_;
   const bool waits = s.constraints_are_old || s.calibration_is_asked;
@@ -156,12 +112,9 @@ void Mapper::take(const LoopAnswer& answer) {
       if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(*answer.place);
     }
   }
-  // Of depth as it was before, pictures say something else.
-  if (answer.step && s.may_change && answer.depth_version == s.depth_version) {
-    const std::vector<MapPose> before = s.back_end.keyframePoses();
-    s.follow({s.back_end.retrack(*answer.step)}, before);
-  }
-  if (!answer.loops.empty() && s.may_change) s.correct(answer.loops);
+  if (answer.step) s.retrack(*answer.step, answer.depth_version);
+  if (!s.may_change) return;
+  for (const LoopConstraint& loop : answer.loops) s.wanted.loops.push_back(loop.asPoseConstraint());
   s.take(answer);
 }
 

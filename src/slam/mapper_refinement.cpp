@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When all frames are in: every pair of keyframes that see the same surface has its say.
 #include <cstdio>
+#include <utility>
 
 #include "mapper_state.hpp"
 #include "posefusion/calibration/field_estimate.hpp"
 #include "posefusion/loop/dense_pairs.hpp"
 
 namespace pf {
-namespace {
-
-LoopConstraint asLoop(const PoseConstraint& c) { return {c.from, c.to, c.T_from_to, c.covariance}; }
-
-}  // namespace
 
 /// The views of the keyframes where the graph has them now.
 void Mapper::State::placeViews() {
@@ -21,7 +17,6 @@ void Mapper::State::placeViews() {
 
 /// Aligns all pairs; the graph, the map and all poses follow.
 void Mapper::State::alignPairs(Refinement& done) {
-  const std::vector<MapPose> before = back_end.keyframePoses();
   std::vector<const KeyframeView*> seen;
   for (const KeyframeView& view : views) seen.push_back(&view);
   const std::vector<PoseConstraint>& known = back_end.graph().constraints();
@@ -32,11 +27,12 @@ void Mapper::State::alignPairs(Refinement& done) {
     done.measured += measured.size();
     return measured;
   };
-  const std::vector<PoseConstraint> anew = measure(known);
-  std::vector<LoopConstraint> loops;
-  for (const PoseConstraint& c : measure(pairs)) loops.push_back(asLoop(c));
-  follow({back_end.remeasure(anew)}, before);
-  correct(loops);
+  wanted.remeasured = measure(known);
+  std::vector<PoseConstraint> loops = measure(pairs);
+  settle();
+  for (PoseConstraint& loop : loops) loop.kind = ConstraintKind::loop;
+  wanted.loops = std::move(loops);
+  settle();
 }
 
 /// Takes in what all keyframes together tell of the depth camera. Returns why pairs of pictures
@@ -50,7 +46,8 @@ std::string Mapper::State::learnFromAll() {
   const FieldEstimate estimate = estimateField(seen, how);
   const bool is_off = estimate.doubtBeside(calibration).empty();
   if (is_off && config.calibration.learns()) {
-    improve(estimate.asCalibration());
+    wanted.depth = estimate.asCalibration();
+    settle();
     return {};
   }
   if (is_off) return "depth is off by a field that it is not corrected by (calibration.mode)";
@@ -75,11 +72,12 @@ Mapper::Refinement Mapper::refine() {
   if (s.views.empty()) result.reason = "there are no pictures of keyframes";
   if (s.views.size() == 1) result.reason = "there is one keyframe, which nothing compares with";
   if (!result.reason.empty()) return result;
-  const std::vector<MapPose> before = s.back_end.keyframePoses();
+  s.settle();
+  const std::vector<Keyframe> before = s.back_end.graph().keyframes();
   s.placeViews();
   result.reason = s.learnFromAll();
   if (result.reason.empty()) s.alignPairs(result);
-  result.largest_shift_m = largestShiftM(before, s.back_end.keyframePoses());
+  result.largest_shift_m = largestShiftM(before, s.back_end.graph().keyframes());
   return result;
 }
 

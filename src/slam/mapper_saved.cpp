@@ -6,6 +6,7 @@
 
 #include "mapper_state.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/map/depth_step.hpp"
 
 namespace pf {
 namespace {
@@ -49,7 +50,12 @@ void Mapper::load(SavedMap saved, MapUse use) {
   if (saved.calibration) {
     s.use(std::move(saved.calibration));
   } else if (s.calibration) {  // the map is of depth as it was measured
-    s.correctDepthBy(s.calibration->field, s.calibration->left_per_m);
+    const DepthField& step = s.calibration->field;
+    correctDepth(s.map, {step, s.frame.camera, s.back_end.graph().keyframes(), s.sensor,
+                         s.calibration->left_per_m});
+    DepthCorrector corrector(step);
+    for (KeyframeView& view : s.views) correctDepth(corrector, view);
+    s.depthHasChanged(corrector);
     ++s.depth_version;  // the keyframes' pictures have changed, and with them what a file has
     s.constraints_are_old = true;
   }

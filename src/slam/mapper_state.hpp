@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "posefusion/calibration/depth_correction.hpp"
@@ -21,9 +22,6 @@ constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 /// Poses from which a search reaches around all of these; the last ones first.
 std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses);
 
-/// How far a keyframe has moved most.
-double largestShiftM(const std::vector<MapPose>& before, const std::vector<MapPose>& after);
-
 /// Where a fragment would lie in another.
 struct FragmentPlace {
   LoopConstraint constraint;
@@ -31,8 +29,17 @@ struct FragmentPlace {
   Eigen::Isometry3d T_other_fragment;
 };
 
+/// What is wanted of the map, and not yet in work.
+struct WantedCorrection {
+  std::vector<PoseConstraint> loops, remeasured;
+  std::optional<DepthCalibration> depth;
+
+  bool isEmpty() const { return loops.empty() && remeasured.empty() && !depth; }
+};
+
 /// The mapper's parts: frames are located and fused in mapper.cpp; what is asked of the loop closer
-/// and what its answers do stands in mapper_loops.cpp, fragments in mapper_fragments.cpp.
+/// and what its answers want stands in mapper_loops.cpp, how the map follows in
+/// mapper_corrections.cpp, fragments in mapper_fragments.cpp.
 struct Mapper::State {
   explicit State(const Config& c)
       : config(c),
@@ -77,6 +84,14 @@ struct Mapper::State {
   DepthCorrector distorter{DepthField()};  ///< the other way round
   ModelView seen;                          ///< `view` with the camera's own error
 
+  // Of corrections.
+  WantedCorrection wanted;
+  std::vector<std::pair<PoseConstraint, int>> wanted_steps;  ///< with the depth's version
+  bool is_correcting = false;                                ///< one is in work
+  std::uint64_t correction_number = 0;                       ///< of it
+  std::vector<std::uint32_t> unswept;  ///< blocks where one surface may lie double, ascending
+  int frames_to_sweep = 0;             ///< until layers are looked for, if there is nothing else
+
   // Of the search for a lost camera.
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
@@ -112,16 +127,26 @@ struct Mapper::State {
   Location beginFragment();
   void askForFragment();
   void placeFragment(const PlaceVerdict& seen);
-  void correct(const std::vector<LoopConstraint>& loops);
-  void follow(const std::vector<Deformation>& deformations, const std::vector<MapPose>& before);
+  std::vector<std::uint32_t> restingUnswept(int since_frame) const;
+  std::optional<MapCorrection> beginCorrection(bool all);
+  void finishCorrection(CorrectedMap& corrected);
+  void finishDepth(DepthImprovement& depth, const std::vector<std::uint32_t>& changed);
+  void settle();
+  void retrack(const PoseConstraint& step, int version);
+  void follow(const std::vector<Deformation>& deformations,
+              const std::vector<std::uint32_t>& blocks, bool lays_layers);
+  void moveView(const MapPose& pose);
   StaticFrame corrected(const StaticFrame& input);
   void use(std::optional<DepthCalibration> known);
+  void use(std::optional<DepthCalibration> known, DepthCorrector there, DepthCorrector back);
+  DepthSensor sensorWith(const std::optional<DepthCalibration>& known) const;
+  DepthImprovement improvementBy(const DepthCalibration& learned) const;
   void take(const LoopAnswer& answer);
-  void improve(const DepthCalibration& step);
+  void noteImproved(DepthImprovement& depth);
+  void depthHasChanged(DepthCorrector& step);
   void placeViews();
   void alignPairs(Refinement& done);
   std::string learnFromAll();
-  void correctDepthBy(const DepthField& step, double left_per_m);
 };
 
 }  // namespace pf

@@ -38,6 +38,10 @@ class DepthCorrector {
  public:
   explicit DepthCorrector(const DepthField& field) : field_(field) {}
 
+  /// The same with its table made, so that the first image of that size does not wait for it.
+  DepthCorrector(const DepthField& field, const cv::Size& size)
+      : field_(field), table_(field, size) {}
+
   /// In metres, CV_32FC1, in memory of its own; empty and other types than DepthCorrection takes
   /// come back as they are.
   cv::Mat inMetres(const cv::Mat& depth, double unit_m);

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/task_arena.h>
 
 #include <cstddef>
 
@@ -18,6 +19,13 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
       tbb::blocked_range<std::size_t>(0, count, grain),
       [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); },
       tbb::simple_partitioner());
+}
+
+/// What work() returns, without help from other threads: for what runs beside, and must not take
+/// the cores of what cannot wait.
+template <typename Work>
+auto inOneThread(const Work& work) {
+  return tbb::task_arena(1).execute(work);
 }
 
 /// Sum of body(begin, end) over pieces of [0, count): the pieces and the order of the additions

@@ -52,6 +52,9 @@ class Deformation {
     return join_ && join_->fragment == fragment ? join_->into : fragment;
   }
 
+  /// The same with further nodes.
+  Deformation with(const std::vector<Node>& more) const;
+
   /// No point moves, and no fragment becomes part of another.
   bool isIdentity() const { return identity_; }
   bool joins() const { return join_.has_value(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,6 +29,14 @@ struct GraphResult {
   std::vector<Refusal> refused;  ///< loops taken out, as they do not fit with the others
   std::vector<Error> errors;     ///< of all constraints, when accepted
   Deformation deformation;       ///< identity unless accepted
+};
+
+/// What became of some loops.
+struct ClosedLoops {
+  std::vector<Deformation> deformations;  ///< what the map is to follow, in this order
+  std::size_t accepted = 0;               ///< corrections
+  std::size_t refused = 0;                ///< loops that do not fit with the others
+  std::size_t joined = 0;                 ///< fragments whose place was found
 };
 
 /// Keyframes and what is measured between them. Loops wait until optimise() has proved them: either
@@ -67,6 +76,9 @@ class PoseGraph {
   /// loop: nothing changes then. Throws like addLoop(), and when both are of one fragment.
   GraphResult joinFragment(const PoseConstraint& loop);
 
+  /// Loops between any keyframes, and those that wait: fragments that they lead between are joined.
+  ClosedLoops close(const std::vector<PoseConstraint>& loops);
+
   /// Constraints that hold, measured anew (same keyframes, same kind): they replace the old ones,
   /// and all is optimised. Nothing changes where one of all would then be missed by more than
   /// max_chi_square. What does not hold, or is no more, is left out.
@@ -80,6 +92,16 @@ class PoseGraph {
 
   /// Counts a correction that moves no keyframe.
   void countCorrection() { ++version_; }
+
+  /// A copy to be corrected in another thread. The loops that wait go with it. Until takeUp()
+  /// nothing but addKeyframe() and addLoop() may be called here.
+  PoseGraph handOver();
+
+  /// The copy is corrected by these deformations, and takes its place. What was added here
+  /// meanwhile follows: a keyframe goes with the one that it was tracked from. Returns the
+  /// deformations with those keyframes in them.
+  std::vector<Deformation> takeUp(PoseGraph corrected,
+                                  const std::vector<Deformation>& deformations);
 
   Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }
 
@@ -113,6 +135,7 @@ class PoseGraph {
   GraphConfig config_;
   std::vector<Keyframe> keyframes_;
   std::vector<PoseConstraint> constraints_, waiting_;
+  std::size_t handed_over_ = 0;  ///< constraints when this was copied by handOver()
   int version_ = 0;
 };
 

@@ -19,6 +19,11 @@ struct LoopConstraint {
   std::int64_t from = 0, to = 0;  ///< keyframes
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame of `to`
+
+  PoseConstraint asPoseConstraint() const {
+    return {static_cast<int>(from), static_cast<int>(to), T_from_to, covariance,
+            ConstraintKind::loop};
+  }
 };
 
 /// What became of it all, for the summary.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "posefusion/calibration/depth_field.hpp"
@@ -28,5 +29,8 @@ struct DepthStep {
 /// last when it was made (the first, for what is older). Behind a camera, or without a keyframe, it
 /// stays. The result does not depend on the number of threads.
 void correctDepth(SurfelMap& map, const DepthStep& step);
+
+/// The same of some blocks.
+void correctDepth(SurfelMap& map, const DepthStep& step, const std::vector<std::uint32_t>& blocks);
 
 }  // namespace pf

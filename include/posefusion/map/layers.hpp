@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "posefusion/map/surfel_map.hpp"
 
@@ -18,5 +20,8 @@ constexpr float kLeastLayer_m = 0.015F, kMostLayer_m = 0.10F;
 /// it sees; the layers that a correction makes are out of view, most of them.) Returns how many
 /// went. The result does not depend on the number of threads.
 std::size_t removeYoungerLayers(SurfelMap& map);
+
+/// The same where at least one of the two layers is in one of these blocks.
+std::size_t removeYoungerLayers(SurfelMap& map, const std::vector<std::uint32_t>& blocks);
 
 }  // namespace pf

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <unordered_map>
 #include <vector>
 
@@ -123,9 +124,19 @@ class SurfelMap {
     std::function<int(int)> fragment_after = [](int fragment) { return fragment; };
   };
 
-  /// Moves surfels, block by block in parallel, and takes fragments into others. All stay in their
-  /// blocks, wherever those lie then, and in their order. What does not move keeps all its bits.
-  void move(const Mover& mover);
+  /// Moves the surfels of some blocks, block by block in parallel, and takes fragments into others.
+  /// All stay in their blocks, wherever those lie then, and in their order. What does not move
+  /// keeps all its bits.
+  void move(const Mover& mover, const std::vector<std::uint32_t>& blocks);
+
+  /// A copy to be corrected elsewhere, and not added to: blocks that were changed in frame
+  /// `since_frame` or later are empty in it. Those would have to be copied with the next frame.
+  SurfelMap resting(int since_frame) const;
+
+  /// Takes up such a copy once it is corrected; `before`: as it was first. Blocks that have
+  /// changed here meanwhile, or are new, stay as they are: returns their places, ascending. The
+  /// blocks given up are then in `corrected`.
+  std::vector<std::uint32_t> takeUp(const SurfelMap& before, SurfelMap& corrected);
 
   /// Memory (bytes) that the blocks hold, used or reserved; never above memory_limit_mb.
   std::size_t memory() const { return memory_; }
@@ -187,6 +198,13 @@ class SurfelMap {
   std::size_t memory_ = 0;
   std::size_t refused_ = 0;
 };
+
+/// The places of all blocks.
+inline std::vector<std::uint32_t> allBlocks(const SurfelMap& map) {
+  std::vector<std::uint32_t> all(map.blocks().size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
 
 template <typename Doomed>
 std::size_t SurfelMap::removeFrom(std::size_t block, const Doomed& doomed) {

@@ -54,12 +54,12 @@ class BackEnd {
   /// nothing before the first.
   void record(std::int64_t stamp_ns, const MapPose& pose);
 
-  /// Closes loops between keyframes, and joins the fragments that they lead between. Returns what
-  /// the map is to follow, in that order.
-  std::vector<Deformation> close(const std::vector<LoopConstraint>& loops);
+  /// The graph, to be corrected in another thread; see PoseGraph::handOver().
+  PoseGraph handOver() { return graph_.handOver(); }
 
-  /// Constraints measured anew; see PoseGraph::remeasure(). Returns what the map is to follow.
-  Deformation remeasure(const std::vector<PoseConstraint>& constraints);
+  /// Takes the corrected graph up, and counts what became of its loops. Returns what the map is to
+  /// follow, in this order.
+  std::vector<Deformation> takeUp(PoseGraph corrected, const ClosedLoops& closed);
 
   /// A step of tracking measured anew; see PoseGraph::retrack().
   Deformation retrack(const PoseConstraint& step);
@@ -68,9 +68,6 @@ class BackEnd {
   /// sees from nearer. Nothing for the first of a piece, and where the camera is back: there the
   /// map that it was tracked against is older than the step, and holds it.
   std::optional<PoseConstraint> stepTo(int keyframe) const;
-
-  /// A correction that moves no keyframe.
-  void countCorrection() { graph_.countCorrection(); }
 
   /// The poses of the frames recorded here (not of loaded ones) as they are known now, without
   /// those of fragments whose place is not known.

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "posefusion/calibration/depth_field.hpp"
+#include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/slam/recent_motion.hpp"
 #include "posefusion/slam/status.hpp"
@@ -94,8 +94,8 @@ class Localiser {
   /// place suggested in another fragment than that is given up.
   void move(const Eigen::Isometry3d& T_new_old, int fragment);
 
-  /// Depth is corrected by one more field from the next frame on.
-  void correctDepth(const DepthField& step);
+  /// Depth is corrected by one more step from the next frame on.
+  void correctDepth(DepthCorrector& step);
 
   /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Believed once some
   /// frames in a row agree.

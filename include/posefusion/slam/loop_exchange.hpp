@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "posefusion/loop/worker.hpp"
+#include "posefusion/slam/map_correction.hpp"
 
 namespace pf {
 
@@ -43,8 +45,9 @@ class LoopResponder {
   virtual bool isReplaced() { return false; }
 };
 
-/// Carries the questions of a mapper to the loop closer, and the answers back when they are due.
-/// Its owner's thread alone may call it.
+/// Carries the questions of a mapper to the loop closer, and the answers back when they are due;
+/// what they want of the map is prepared in a thread, one correction at a time. Its owner's thread
+/// alone may call it.
 class LoopExchange {
  public:
   LoopExchange(double lag_s, AnswerTime time, std::unique_ptr<LoopResponder> responder)
@@ -53,7 +56,7 @@ class LoopExchange {
   /// After each frame of the mapper. What the closer threw is thrown here; it goes on afterwards.
   void serve(Mapper& mapper);
 
-  /// After the last frame: waits for all answers and hands them on.
+  /// After the last frame: waits for all answers and corrections and hands them on.
   void finish(Mapper& mapper);
 
   /// Forgets what is still unanswered; for a mapper that was reset.
@@ -83,6 +86,8 @@ class LoopExchange {
   void askInParts(LoopQuestion question);
   std::deque<Asked>::iterator findDue(const Mapper& mapper);
   void take(std::deque<Asked>::iterator asked, Mapper& mapper);
+  void correct(Mapper& mapper);
+  void takeCorrection(Mapper& mapper);
 
   double lag_s_;
   AnswerTime time_;
@@ -93,6 +98,10 @@ class LoopExchange {
   LoopCounts counts_;
   std::vector<double> verification_ms_;
   double waited_ms_ = 0;
+  std::future<CorrectedMap> correcting_;
+  std::int64_t correcting_since_ = 0;  ///< number of the frame
+  bool is_correction_void_ = false;    ///< of a mapper that was reset
+  std::future<void> freeing_;          ///< memory, beside
 };
 
 }  // namespace pf

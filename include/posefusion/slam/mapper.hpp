@@ -13,6 +13,7 @@
 #include "posefusion/loop/worker.hpp"
 #include "posefusion/slam/back_end.hpp"
 #include "posefusion/slam/config.hpp"
+#include "posefusion/slam/map_correction.hpp"
 #include "posefusion/slam/saved_map.hpp"
 #include "posefusion/slam/status.hpp"
 
@@ -50,9 +51,23 @@ class Mapper {
   /// Somebody else answers from now on: the next question tells of all keyframes.
   void introduceCloser();
 
-  /// Takes in an answer: a loop corrects the map and all poses; a place found brings a lost camera
-  /// back, once the next frames agree.
+  /// Takes in an answer: a loop corrects the map and all poses, see takeCorrection(); a place found
+  /// brings a lost camera back, once the next frames agree.
   void take(const LoopAnswer& answer);
+
+  /// What answers want of the map, one at a time, for any thread to prepare(). Nothing: nothing is
+  /// wanted, or the last is still in work.
+  std::optional<MapCorrection> takeCorrection();
+
+  /// Takes it in, between two frames: the map, the graph and all poses follow. What belongs to a
+  /// map that was reset is left out. What is to be freed is then in `corrected`.
+  void take(CorrectedMap& corrected);
+
+  /// The one in work has failed.
+  void abandonCorrection();
+
+  /// Makes all corrections that are wanted, at once; what is still prepared elsewhere is void.
+  void settle();
 
   /// From the next frame on depth is corrected by this, until mapping knows better; what
   /// reset() begins keeps it. To be called before the first frame; before load(), which takes the

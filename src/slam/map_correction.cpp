@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/slam/map_correction.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "posefusion/map/deform.hpp"
+#include "posefusion/map/layers.hpp"
+
+namespace pf {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+
+/// The places of the blocks that have changed.
+std::vector<std::uint32_t> changedSince(const SurfelMap& before, const SurfelMap& now) {
+  std::vector<std::uint32_t> changed;
+  for (std::size_t i = 0; i < now.blocks().size(); ++i) {
+    if (!now.blocks().isShared(i, before.blocks()))
+      changed.push_back(static_cast<std::uint32_t>(i));
+  }
+  return changed;
+}
+
+void improve(DepthImprovement& depth, CorrectedMap& made) {
+  DepthStep step = depth.step;
+  step.keyframes = made.graph.keyframes();
+  correctDepth(made.map, step);
+  made.graph.countCorrection();
+  const cv::Size small(step.camera.width, step.camera.height);
+  depth.corrector = DepthCorrector(depth.known.field, depth.frame_size);
+  depth.distorter = DepthCorrector(depth.known.field.inverse(), small);
+  depth.of_frames = DepthCorrector(step.field, depth.frame_size);
+  depth.of_views = DepthCorrector(step.field, small);
+  for (KeyframeView& view : depth.views) correctDepth(depth.of_views, view);
+}
+
+}  // namespace
+
+double largestShiftM(const std::vector<Keyframe>& before, const std::vector<Keyframe>& after) {
+  double largest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Eigen::Vector3d from = before[i].T_map_camera.translation();
+    largest = std::max(largest, (after[i].T_map_camera.translation() - from).norm());
+  }
+  return largest;
+}
+
+void correctDepth(DepthCorrector& corrector, KeyframeView& view) {
+  view.depth_mm = corrector.likeInput(view.depth_mm, kMillimetre);
+}
+
+CorrectedMap prepare(MapCorrection correction) {
+  const std::vector<Keyframe> keyframes = correction.graph.keyframes();
+  CorrectedMap made{correction.number,
+                    std::move(correction.graph),
+                    {},
+                    correction.map,
+                    std::move(correction.map),
+                    std::move(correction.depth),
+                    std::move(correction.unswept)};
+  made.closed = made.graph.close(correction.loops);
+  if (!correction.remeasured.empty()) {
+    GraphResult result = made.graph.remeasure(correction.remeasured);
+    if (result.accepted) made.closed.deformations.push_back(std::move(result.deformation));
+    made.closed.accepted += result.accepted ? 1 : 0;
+  }
+  bool joins = false;
+  for (const Deformation& deformation : made.closed.deformations) {
+    deform(made.map, deformation);
+    joins |= deformation.joins();
+  }
+  // What joins nothing and moves no keyframe so far lays no pass over another.
+  made.lays_layers = joins || largestShiftM(keyframes, made.graph.keyframes()) > kLeastLayer_m;
+  if (made.lays_layers) {
+    const auto moved = changedSince(made.before, made.map);
+    made.swept.insert(made.swept.end(), moved.begin(), moved.end());
+  }
+  if (!made.swept.empty()) removeYoungerLayers(made.map, made.swept);
+  if (made.depth) improve(*made.depth, made);
+  return made;
+}
+
+}  // namespace pf
