@@ -87,7 +87,9 @@ TEST(MapDatabase, RefusesSurfelsThatCannotBe) {
     const std::string path = saved(folder, example.update, name);
     return errorOf([&] { readAll(path); });
   };
-  SurfelArrays& s = example.update.blocks[0].surfels;
+  auto surfels = std::make_shared<SurfelArrays>(*example.update.blocks[0].surfels);
+  example.update.blocks[0].surfels = surfels;
+  SurfelArrays& s = *surfels;
   s.nx[3] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_NE(error("a").find("not finite"), std::string::npos);
   s.nx[3] = 0;

@@ -85,7 +85,7 @@ TEST_F(MapRepairTest, ABlockThatIsDamagedIsLeftOut) {
   const MapRepair result = repair(path);
   ASSERT_EQ(result.lost.size(), 1U);
   EXPECT_NE(result.lost[0].find("1 blocks of surfels"), std::string::npos) << result.lost[0];
-  const std::size_t lost = example.update.blocks[1].surfels.size();
+  const std::size_t lost = example.update.blocks[1].surfels->size();
   EXPECT_EQ(result.kept.surfels, 4000U - lost);
   EXPECT_EQ(surfelsIn(MapReader(repaired).surfels()), 4000U - lost);
 }

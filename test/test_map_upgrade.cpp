@@ -51,12 +51,14 @@ struct OldMap {
   void addBlock(int frame, double x) {
     BlockRecord block;
     block.index = static_cast<std::uint32_t>(frame);
-    block.surfels.resize(1);
-    block.surfels.nz[0] = -1;
-    block.surfels.radius[0] = 0.01F;
-    block.surfels.x[0] = static_cast<float>(x + 0.5);
-    block.surfels.y[0] = 0.25F;
-    block.surfels.created[0] = block.surfels.seen[0] = frame;
+    SurfelArrays s;
+    s.resize(1);
+    s.nz[0] = -1;
+    s.radius[0] = 0.01F;
+    s.x[0] = static_cast<float>(x + 0.5);
+    s.y[0] = 0.25F;
+    s.created[0] = s.seen[0] = frame;
+    block.surfels = std::make_shared<const SurfelArrays>(std::move(s));
     update.blocks.push_back(block);
   }
 

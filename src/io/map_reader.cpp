@@ -112,7 +112,7 @@ std::vector<FragmentSurfels> MapReader::surfels() const {
       if (parts.empty() || parts.back().fragment != block.fragment) {
         parts.push_back({block.fragment, {}});
       }
-      parts.back().surfels.append(block.surfels);
+      parts.back().surfels.append(*block.surfels);
     }
     if (state_->version == kMapVersion || parts.empty()) return parts;
     return upgradeSurfels(parts.front().surfels, content().keyframes);

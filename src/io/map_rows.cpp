@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "map_encoding.hpp"
 #include "map_schema.hpp"
@@ -88,7 +89,7 @@ BlockRecord blockAt(const SqliteStatement& row, int last_frame) {
     throw InputError(name + " is of fragment " + std::to_string(block.fragment) +
                      ", expected 0 or more");
   }
-  block.surfels = decodeSurfels(bytes, last_frame);
+  block.surfels = std::make_shared<const SurfelArrays>(decodeSurfels(bytes, last_frame));
   return block;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 
 #include "map_header.hpp"
 #include "map_rows.hpp"
@@ -149,16 +150,17 @@ void Salvage::gatherBlocks() {
   forEachRow("blocks of surfels", "blocks", "id", blockColumns(version_),
              [&](std::int64_t, const SqliteStatement& row) {
                BlockRecord block = blockAt(row, std::numeric_limits<std::int32_t>::max());
-               for (const auto* frames : {&block.surfels.seen, &block.surfels.created}) {
+               for (const auto* frames : {&block.surfels->seen, &block.surfels->created}) {
                  for (const std::int32_t frame : *frames) {
                    found_.frame = std::max(found_.frame, frame);
                  }
                }
-               if (version_ < kMapVersion) return old.append(block.surfels);
+               if (version_ < kMapVersion) return old.append(*block.surfels);
                found_.blocks.push_back(std::move(block));
              });
   for (FragmentSurfels& part : upgradeSurfels(old, found_.keyframes)) {
-    found_.blocks.push_back({0, part.fragment, std::move(part.surfels)});
+    auto surfels = std::make_shared<const SurfelArrays>(std::move(part.surfels));
+    found_.blocks.push_back({0, part.fragment, std::move(surfels)});
   }
   for (std::size_t i = 0; i < found_.blocks.size(); ++i) {
     found_.blocks[i].index = static_cast<std::uint32_t>(i);

@@ -88,7 +88,7 @@ void writeBlocks(const SqliteDatabase& database, const MapUpdate& update) {
   cutTable(database, "blocks", update.block_count);
   SqliteStatement row = database.prepare("INSERT OR REPLACE INTO blocks VALUES(?1, ?2, ?3, ?4)");
   for (const BlockRecord& block : update.blocks) {
-    const std::string bytes = encode(block.surfels);
+    const std::string bytes = encode(*block.surfels);
     row.bind(1, std::int64_t{block.index});
     row.bind(2, std::int64_t{block.fragment});
     row.bind(3, bytes);
@@ -171,7 +171,7 @@ std::vector<BlockRecord> changedBlocks(const SurfelMap& map, int since_frame) {
   for (std::size_t i = 0; i < map.blocks().size(); ++i) {
     const SurfelBlock& block = map.blocks()[i];
     if (block.changed < since_frame) continue;
-    records.push_back({static_cast<std::uint32_t>(i), block.fragment, block.surfels});
+    records.push_back({static_cast<std::uint32_t>(i), block.fragment, map.blocks().share(i)});
   }
   return records;
 }

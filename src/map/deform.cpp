@@ -12,6 +12,28 @@
 namespace pf {
 namespace {
 
+/// Positions and normals of surfels that lie one after the other.
+struct Run {
+  float *x, *y, *z, *nx, *ny, *nz;
+  std::size_t count;
+};
+
+POSEFUSION_SIMD_CLONES
+void moveRun(const float* r, const float* t, const Run& run) {
+  float* __restrict x = run.x, * __restrict y = run.y, * __restrict z = run.z;
+  float* __restrict nx = run.nx, * __restrict ny = run.ny, * __restrict nz = run.nz;
+  for (std::size_t i = 0; i < run.count; ++i) {
+    const float px = x[i], py = y[i], pz = z[i];
+    x[i] = r[0] * px + r[1] * py + r[2] * pz + t[0];
+    y[i] = r[3] * px + r[4] * py + r[5] * pz + t[1];
+    z[i] = r[6] * px + r[7] * py + r[8] * pz + t[2];
+    const float a = nx[i], b = ny[i], c = nz[i];
+    nx[i] = r[0] * a + r[1] * b + r[2] * c;
+    ny[i] = r[3] * a + r[4] * b + r[5] * c;
+    nz[i] = r[6] * a + r[7] * b + r[8] * c;
+  }
+}
+
 /// The corrections of all frames that made a surfel.
 class Motions {
  public:
@@ -54,11 +76,12 @@ class Motions {
   /// Moves the surfels of a block whose correction is not the identity.
   void apply(SurfelArrays& s, int fragment) const {
     std::size_t k = 0;
-    for (std::size_t i = 0; i < s.size(); ++i) {
+    for (std::size_t i = 0, end = 0; i < s.size(); i = end) {
+      while (end < s.size() && s.created[end] == s.created[i]) ++end;
       k = find({fragment, s.created[i]}, k);
       if (moves_[k] == 0) continue;
-      motions_[k].point(s.x[i], s.y[i], s.z[i], s.x[i], s.y[i], s.z[i]);
-      motions_[k].direction(s.nx[i], s.ny[i], s.nz[i], s.nx[i], s.ny[i], s.nz[i]);
+      moveRun(motions_[k].rotation(), motions_[k].translation(),
+              {&s.x[i], &s.y[i], &s.z[i], &s.nx[i], &s.ny[i], &s.nz[i], end - i});
     }
   }
 
@@ -94,10 +117,13 @@ void deform(SurfelMap& map, const Deformation& deformation,
             const std::vector<std::uint32_t>& blocks) {
   if (deformation.isIdentity()) return;
   const Motions motions(map, deformation, blocks);
-  map.move({[&](const SurfelBlock& block) { return motions.moves(block); },
-            [&](SurfelArrays& surfels, int fragment) { motions.apply(surfels, fragment); },
-            [&](int fragment) { return deformation.fragmentAfter(fragment); }},
-           blocks);
+  SurfelMap::Mover mover{
+      [&](const SurfelBlock& block) { return motions.moves(block); },
+      [&](SurfelArrays& surfels, int fragment) { motions.apply(surfels, fragment); }};
+  if (deformation.joins()) {
+    mover.fragment_after = [&](int fragment) { return deformation.fragmentAfter(fragment); };
+  }
+  map.move(mover, blocks);
 }
 
 }  // namespace pf

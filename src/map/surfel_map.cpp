@@ -14,6 +14,7 @@ namespace {
 // in vain, and no single step moves much.
 constexpr std::size_t kChunk = 128;
 constexpr std::size_t kGrowthShare = 8;
+constexpr std::size_t kGrain = 256;  // blocks
 // What an integer can count; at any sensible side farther than floats tell one block from the next.
 constexpr float kCellLimit = 1e9F;
 
@@ -28,11 +29,39 @@ std::size_t memoryOf(const SurfelBlock& block) {
   return sizeof(SurfelBlock) + block.surfels.x.capacity() * SurfelArrays::bytesPerSurfel();
 }
 
-void fit(const SurfelArrays& s, std::size_t first, SurfelBlock& block) {
-  for (std::size_t i = first; i < s.size(); ++i) {
-    block.bounds.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
-    block.largest_radius = std::max(block.largest_radius, s.radius[i]);
+/// Least and largest of some numbers, of which there is at least one.
+POSEFUSION_SIMD_CLONES
+void findLimits(const float* numbers, std::size_t count, float& least, float& largest) {
+  constexpr std::size_t kLanes = 16;
+  float low[kLanes], high[kLanes];
+  for (std::size_t k = 0; k < kLanes; ++k) low[k] = high[k] = numbers[0];
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const float number = numbers[i + k];
+      low[k] = number < low[k] ? number : low[k];
+      high[k] = number > high[k] ? number : high[k];
+    }
   }
+  for (; i < count; ++i) {
+    low[0] = std::min(low[0], numbers[i]);
+    high[0] = std::max(high[0], numbers[i]);
+  }
+  least = *std::min_element(low, low + kLanes);
+  largest = *std::max_element(high, high + kLanes);
+}
+
+void fit(const SurfelArrays& s, std::size_t first, SurfelBlock& block) {
+  const std::size_t count = s.size() - first;
+  if (count == 0) return;
+  Eigen::Vector3f low, high;
+  findLimits(&s.x[first], count, low.x(), high.x());
+  findLimits(&s.y[first], count, low.y(), high.y());
+  findLimits(&s.z[first], count, low.z(), high.z());
+  block.bounds.extend(Eigen::AlignedBox3f(low, high));
+  float least = 0, largest = 0;
+  findLimits(&s.radius[first], count, least, largest);
+  block.largest_radius = std::max(block.largest_radius, largest);
 }
 
 }  // namespace
@@ -175,7 +204,8 @@ void SurfelMap::move(const Mover& mover, const std::vector<std::uint32_t>& block
   parallelFor(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const SurfelBlock& seen = blocks_[blocks[k]];
-      const int fragment = mover.fragment_after(seen.fragment);
+      const int fragment =
+          mover.fragment_after ? mover.fragment_after(seen.fragment) : seen.fragment;
       const bool moves = mover.moves(seen);
       if (!moves && fragment == seen.fragment) continue;
       SurfelBlock& block = blocks_.change(blocks[k]);
@@ -184,6 +214,7 @@ void SurfelMap::move(const Mover& mover, const std::vector<std::uint32_t>& block
       refit(block);
     }
   });
+  if (!mover.fragment_after) return;
   // Where a fragment has gone, new surfels come into new blocks: its cubes are not those.
   for (auto entry = index_.begin(); entry != index_.end();) {
     const int fragment = entry->first.fragment;
@@ -207,14 +238,20 @@ SurfelMap SurfelMap::resting(int since_frame) const {
 std::vector<std::uint32_t> SurfelMap::takeUp(const SurfelMap& before, SurfelMap& corrected) {
   std::vector<std::uint32_t> changed;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!blocks_.isShared(i, before.blocks_)) {
-      changed.push_back(static_cast<std::uint32_t>(i));
-    } else if (!corrected.blocks_.isShared(i, before.blocks_)) {
-      blocks_.swap(i, corrected.blocks_);
-      blocks_.change(i).changed = frame_;
-    }
+    if (!blocks_.isShared(i, before.blocks_)) changed.push_back(static_cast<std::uint32_t>(i));
   }
-  countMemory();
+  memory_ += deterministicSum<std::size_t>(
+      before.blocks_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::size_t more = 0;  // modulo 2^64: may be less
+        for (std::size_t i = begin; i < end; ++i) {
+          const bool is_new = !corrected.blocks_.isShared(i, before.blocks_);
+          if (!is_new || !blocks_.isShared(i, before.blocks_)) continue;
+          blocks_.swap(i, corrected.blocks_);
+          blocks_.change(i).changed = frame_;
+          more += memoryOf(blocks_[i]) - memoryOf(before.blocks_[i]);
+        }
+        return more;
+      });
   return changed;
 }
 

@@ -6,21 +6,12 @@
 
 #include "posefusion/map/deform.hpp"
 #include "posefusion/map/layers.hpp"
+#include "posefusion/map/tears.hpp"
 
 namespace pf {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
-
-/// The places of the blocks that have changed.
-std::vector<std::uint32_t> changedSince(const SurfelMap& before, const SurfelMap& now) {
-  std::vector<std::uint32_t> changed;
-  for (std::size_t i = 0; i < now.blocks().size(); ++i) {
-    if (!now.blocks().isShared(i, before.blocks()))
-      changed.push_back(static_cast<std::uint32_t>(i));
-  }
-  return changed;
-}
 
 void improve(DepthImprovement& depth, CorrectedMap& made) {
   DepthStep step = depth.step;
@@ -73,8 +64,8 @@ CorrectedMap prepare(MapCorrection correction) {
   // What joins nothing and moves no keyframe so far lays no pass over another.
   made.lays_layers = joins || largestShiftM(keyframes, made.graph.keyframes()) > kLeastLayer_m;
   if (made.lays_layers) {
-    const auto moved = changedSince(made.before, made.map);
-    made.swept.insert(made.swept.end(), moved.begin(), moved.end());
+    const auto torn = tornBlocks(made.before, made.map, keyframes, made.graph.keyframes());
+    made.swept.insert(made.swept.end(), torn.begin(), torn.end());
   }
   if (!made.swept.empty()) removeYoungerLayers(made.map, made.swept);
   if (made.depth) improve(*made.depth, made);

@@ -28,6 +28,9 @@ class RigidMotion {
     oz = r_[6] * x + r_[7] * y + r_[8] * z;
   }
 
+  const float* rotation() const { return r_; }  ///< row by row
+  const float* translation() const { return t_; }
+
  private:
   float r_[9];
   float t_[3];

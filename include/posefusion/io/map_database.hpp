@@ -40,10 +40,10 @@ struct MapContent {
 struct BlockRecord {
   std::uint32_t index = 0;
   int fragment = kFirstFragment;
-  SurfelArrays surfels;
+  std::shared_ptr<const SurfelArrays> surfels;
 };
 
-/// Copies of the blocks changed in or after a frame; -1: of all.
+/// The blocks changed in or after a frame, shared with the map; -1: all.
 std::vector<BlockRecord> changedBlocks(const SurfelMap& map, int since_frame);
 
 /// What one write brings: keyframes and constraints are all there are (only those that differ are

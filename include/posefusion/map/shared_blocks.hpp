@@ -73,6 +73,11 @@ class SharedBlocks {
     return i < size() && i < other.size() && blocks_[i] == other.blocks_[i];
   }
 
+  /// The surfels of block i as they are now, for any thread and as long as they are held.
+  std::shared_ptr<const SurfelArrays> share(std::size_t i) const {
+    return {blocks_[i], &blocks_[i]->surfels};
+  }
+
   /// Exchanges block i for that of another list.
   void swap(std::size_t i, SharedBlocks& other) { blocks_[i].swap(other.blocks_[i]); }
 

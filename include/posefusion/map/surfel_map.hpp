@@ -121,7 +121,7 @@ class SurfelMap {
   struct Mover {
     std::function<bool(const SurfelBlock&)> moves;
     std::function<void(SurfelArrays&, int fragment)> move;
-    std::function<int(int)> fragment_after = [](int fragment) { return fragment; };
+    std::function<int(int)> fragment_after{};  ///< none: all stay what they are
   };
 
   /// Moves the surfels of some blocks, block by block in parallel, and takes fragments into others.
