@@ -37,8 +37,9 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
   v.integer("enough_loops", c.enough_loops, 1, 1000,
             "a keyframe that has so many loops is compared with no more");
   v.number("answer_lag_s", c.answer_lag_s, 0.0, 100.0,
-           "from a question to the loop closer to its answer, offline and in lossless replay (s, "
-           "counted in frames at the pace of the camera)");
+           "from a question to the loop closer to its answer, and from there to the correction of "
+           "the map, offline and in lossless replay (s, counted in frames at the pace of the "
+           "camera)");
   v.number("new_fragment_after_s", c.new_fragment_after_s, 0.0, 1e6,
            "a lost camera that sees something for so long begins a new piece of the map, until its "
            "place is known; 0: never");
