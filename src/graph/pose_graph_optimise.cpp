@@ -14,24 +14,6 @@
 namespace pf {
 namespace {
 
-/// For each keyframe the first keyframe of its connected part.
-std::vector<std::size_t> firstOfParts(std::size_t keyframes,
-                                      const std::vector<PoseConstraint>& constraints) {
-  std::vector<std::size_t> first(keyframes);
-  std::iota(first.begin(), first.end(), 0);
-  const auto find = [&](int keyframe) {
-    auto at = static_cast<std::size_t>(keyframe);
-    while (first[at] != at) at = first[at] = first[first[at]];
-    return at;
-  };
-  for (const PoseConstraint& c : constraints) {
-    const std::size_t a = find(c.from), b = find(c.to);
-    first[std::max(a, b)] = std::min(a, b);
-  }
-  for (std::size_t i = 0; i < keyframes; ++i) first[i] = find(static_cast<int>(i));
-  return first;
-}
-
 double chiSquare(const PoseConstraint& c, const std::vector<Keyframe>& keyframes) {
   return chiSquare(c, keyframes[static_cast<std::size_t>(c.from)].T_map_camera,
                    keyframes[static_cast<std::size_t>(c.to)].T_map_camera);
@@ -56,6 +38,23 @@ std::string strainText(double strain, double most) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> firstOfParts(std::size_t keyframes,
+                                      const std::vector<PoseConstraint>& constraints) {
+  std::vector<std::size_t> first(keyframes);
+  std::iota(first.begin(), first.end(), 0);
+  const auto find = [&](int keyframe) {
+    auto at = static_cast<std::size_t>(keyframe);
+    while (first[at] != at) at = first[at] = first[first[at]];
+    return at;
+  };
+  for (const PoseConstraint& c : constraints) {
+    const std::size_t a = find(c.from), b = find(c.to);
+    first[std::max(a, b)] = std::min(a, b);
+  }
+  for (std::size_t i = 0; i < keyframes; ++i) first[i] = find(static_cast<int>(i));
+  return first;
+}
 
 PoseGraph::Attempt PoseGraph::attempt(const std::vector<Keyframe>& from,
                                       const std::vector<PoseConstraint>& loops) const {
@@ -142,6 +141,7 @@ GraphResult PoseGraph::prove(const std::vector<Keyframe>& start,
         std::max_element(first_new, tried.errors.end(),
                          [](const auto& a, const auto& b) { return a.after < b.after; });
     result.refused.push_back({worst->constraint, tried.reason});
+    doubt(worst->constraint);
     loops.erase(loops.begin() + (worst - first_new));
   }
   return result;
@@ -217,6 +217,11 @@ ClosedLoops PoseGraph::close(const std::vector<PoseConstraint>& loops) {
     }
   }
   take(optimise());
+  if (closed.refused == 0) return closed;
+  GraphResult weighed = reconsider();
+  closed.withdrawn = weighed.refused.size();
+  weighed.refused.clear();
+  take(std::move(weighed));
   return closed;
 }
 

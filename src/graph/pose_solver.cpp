@@ -64,17 +64,17 @@ ceres::Solver::Options optionsOf(const GraphConfig& config) {
   return options;
 }
 
-}  // namespace
-
-bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
-                const std::vector<bool>& fixed, std::vector<Eigen::Isometry3d>& poses) {
+/// One of the ways in which errors count. `lossOf(i)`: of constraint i.
+template <typename LossOf>
+bool solveWith(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
+               const std::vector<bool>& fixed, std::vector<Eigen::Isometry3d>& poses,
+               const LossOf& lossOf) {
   std::vector<Increment> increments(poses.size(), Increment{});
   ceres::Problem problem;
-  for (const PoseConstraint& c : constraints) {
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const PoseConstraint& c = constraints[i];
     const auto from = static_cast<std::size_t>(c.from), to = static_cast<std::size_t>(c.to);
-    const bool loop = c.kind == ConstraintKind::loop;
-    problem.AddResidualBlock(new PoseFactor(c, poses[from], poses[to]),
-                             loop ? new ceres::CauchyLoss(config.robust_scale) : nullptr,
+    problem.AddResidualBlock(new PoseFactor(c, poses[from], poses[to]), lossOf(i),
                              increments[from].data(), increments[to].data());
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -91,6 +91,24 @@ bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& co
     if (step.norm() > kNothing) poses[i] = orthonormalised(poses[i] * expSe3(step));
   }
   return true;
+}
+
+}  // namespace
+
+bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
+                const std::vector<bool>& fixed, std::vector<Eigen::Isometry3d>& poses) {
+  return solveWith(config, constraints, fixed, poses, [&](std::size_t i) -> ceres::LossFunction* {
+    const bool loop = constraints[i].kind == ConstraintKind::loop;
+    return loop ? new ceres::CauchyLoss(config.robust_scale) : nullptr;
+  });
+}
+
+bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
+                const std::vector<double>& weights, const std::vector<bool>& fixed,
+                std::vector<Eigen::Isometry3d>& poses) {
+  return solveWith(config, constraints, fixed, poses, [&](std::size_t i) -> ceres::LossFunction* {
+    return new ceres::ScaledLoss(nullptr, weights[i], ceres::TAKE_OWNERSHIP);
+  });
 }
 
 }  // namespace pf

@@ -15,4 +15,9 @@ namespace pf {
 bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
                 const std::vector<bool>& fixed, std::vector<Eigen::Isometry3d>& poses);
 
+/// The same with a weight for each constraint in place of the Cauchy loss.
+bool solvePoses(const GraphConfig& config, const std::vector<PoseConstraint>& constraints,
+                const std::vector<double>& weights, const std::vector<bool>& fixed,
+                std::vector<Eigen::Isometry3d>& poses);
+
 }  // namespace pf

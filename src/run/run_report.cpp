@@ -60,6 +60,7 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
           {"accepted_local", c.local},
           {"corrections", corrections.accepted},
           {"fragments_joined", corrections.joined},
+          {"withdrawn", corrections.withdrawn},
           {"refused", refused},
           {"places_searched", c.searched},
           {"places_found", c.found}};

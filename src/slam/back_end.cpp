@@ -59,6 +59,7 @@ std::vector<Deformation> BackEnd::takeUp(PoseGraph corrected, const ClosedLoops&
   counts_.accepted += closed.accepted;
   counts_.refused += closed.refused;
   counts_.joined += closed.joined;
+  counts_.withdrawn += closed.withdrawn;
   return graph_.takeUp(std::move(corrected), closed.deformations);
 }
 

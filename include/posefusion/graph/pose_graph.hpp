@@ -37,6 +37,7 @@ struct ClosedLoops {
   std::size_t accepted = 0;               ///< corrections
   std::size_t refused = 0;                ///< loops that do not fit with the others
   std::size_t joined = 0;                 ///< fragments whose place was found
+  std::size_t withdrawn = 0;              ///< loops that held, and do not any more
 };
 
 /// Keyframes and what is measured between them. Loops wait until optimise() has proved them: either
@@ -77,7 +78,15 @@ class PoseGraph {
   GraphResult joinFragment(const PoseConstraint& loop);
 
   /// Loops between any keyframes, and those that wait: fragments that they lead between are joined.
+  /// Where a loop is refused, all are weighed against each other; see reconsider().
   ClosedLoops close(const std::vector<PoseConstraint>& loops);
+
+  /// What if loops that hold are wrong, and those that were refused are right? All loops and
+  /// returns are solved with a truncated loss (graduated non-convexity: Yang et al., "Graduated
+  /// Non-Convexity for Robust Spatial Perception", RA-L 2020). Where more of them can hold together
+  /// than do, they do from now on, and the others (`refused` has those that held) are doubted.
+  /// Steps of tracking always hold.
+  GraphResult reconsider();
 
   /// Constraints that hold, measured anew (same keyframes, same kind): they replace the old ones,
   /// and all is optimised. Nothing changes where one of all would then be missed by more than
@@ -108,6 +117,8 @@ class PoseGraph {
   /// All that must be kept to go on later.
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<PoseConstraint>& constraints() const { return constraints_; }  ///< that hold
+  /// Loops that contradict what holds, the last of them: kept, as they may be right.
+  const std::vector<PoseConstraint>& doubted() const { return doubted_; }
   int version() const { return version_; }  ///< number of accepted corrections
 
   const GraphConfig& config() const { return config_; }
@@ -126,6 +137,9 @@ class PoseGraph {
   /// What stands against accepting these errors, the last of them of new loops; empty: nothing.
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
+  void doubt(const PoseConstraint& loop);
+  /// The poses where as many as possible of these constraints hold; empty: the solver failed.
+  std::vector<Eigen::Isometry3d> graduallySolved(const std::vector<PoseConstraint>& all) const;
   bool isMet(const PoseConstraint& loop) const;
   bool isOnlyWay(const PoseConstraint& step) const;
   bool isWorthMoving(const std::vector<Keyframe>& corrected) const;
@@ -134,7 +148,7 @@ class PoseGraph {
 
   GraphConfig config_;
   std::vector<Keyframe> keyframes_;
-  std::vector<PoseConstraint> constraints_, waiting_;
+  std::vector<PoseConstraint> constraints_, waiting_, doubted_;
   std::size_t handed_over_ = 0;  ///< constraints when this was copied by handOver()
   int version_ = 0;
 };

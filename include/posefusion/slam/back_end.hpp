@@ -83,9 +83,10 @@ class BackEnd {
   std::vector<MapPose> keyframePoses() const;
 
   struct Counts {
-    std::size_t accepted = 0;  ///< corrections of the graph
-    std::size_t refused = 0;   ///< loops that do not fit with the others
-    std::size_t joined = 0;    ///< fragments whose place was found
+    std::size_t accepted = 0;   ///< corrections of the graph
+    std::size_t refused = 0;    ///< loops that do not fit with the others
+    std::size_t joined = 0;     ///< fragments whose place was found
+    std::size_t withdrawn = 0;  ///< loops that held, and do not any more
   };
   const Counts& counts() const { return counts_; }
 

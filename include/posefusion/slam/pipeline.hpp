@@ -61,6 +61,9 @@ class Pipeline {
   /// Before load() and the first frame; see Mapper::calibrate().
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
+  /// Between two frames: takes in loops that somebody else has found; see Mapper::take().
+  void take(const LoopAnswer& answer) { mapper_.take(answer); }
+
   /// After the last frame: takes in what the loop closer still has to say, and refines the map
   /// where the settings want it. Returns what that did, or why nothing, in a line.
   std::string finish();
