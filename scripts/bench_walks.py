@@ -93,6 +93,24 @@ class Walks(Falls, Maps):
         self.fall_rows(name, self.fall_check(sequence, folder.parent / "status.csv", "--map",
                                              folder / "map.pfdb"))
 
+    def told_wrong(self):
+        """Five wrong loops that agree with each other, told while loop_room is mapped."""
+        for seed in self.options.seeds:
+            sequence = self.simulated("loop_room", seed)
+            found = {}
+            for loops in (0, 5):
+                note(f"mapping loop_room {seed} with {loops} wrong loops")
+                found[loops] = json.loads(call(PROGRAMS / "posefusion_wrong_loops", sequence,
+                                               "--detector", "recorded", "--loops", str(loops),
+                                               "--seed", str(seed)))
+            told = found[5]
+            name = f"loop_room {seed}, recorded, five wrong loops told"
+            self.row(f"{name}: in the graph at a time", told["held_at_a_time"], "", digits=0)
+            self.row(f"{name}: in the end", told["held_in_the_end"], "", 0, digits=0)
+            self.row(f"{name}: ATE RMSE, not refined", told["ate_rmse_m"], "m")
+            self.row(f"{name}: that against none told", told["ate_rmse_m"] / found[0]["ate_rmse_m"],
+                     "x", 1.1, digits=2)
+
     def come_back(self):
         """How soon a camera is found in a map made before: at its start, and after a fall."""
         for seed in self.options.seeds:
