@@ -31,6 +31,22 @@ double chiSquareAt(const PoseConstraint& c, const std::vector<Eigen::Isometry3d>
                    poses[static_cast<std::size_t>(c.to)]);
 }
 
+/// What graduated non-convexity makes least: errors, those of loops cut off at chi-square c2.
+double costOf(const std::vector<PoseConstraint>& all, const std::vector<Eigen::Isometry3d>& poses,
+              double c2) {
+  return std::accumulate(all.begin(), all.end(), 0.0, [&](double sum, const PoseConstraint& c) {
+    const double error = chiSquareAt(c, poses);
+    return sum + (isSwitchable(c) ? std::min(error, c2) : error);
+  });
+}
+
+std::vector<Eigen::Isometry3d> posesOf(const std::vector<Keyframe>& keyframes) {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(keyframes.size());
+  for (const Keyframe& k : keyframes) poses.push_back(k.T_map_camera);
+  return poses;
+}
+
 }  // namespace
 
 bool isSwitchable(const PoseConstraint& c) {
@@ -44,8 +60,7 @@ void PoseGraph::doubt(const PoseConstraint& loop) {
 
 std::vector<Eigen::Isometry3d> PoseGraph::graduallySolved(
     const std::vector<PoseConstraint>& all) const {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Keyframe& k : keyframes_) poses.push_back(k.T_map_camera);
+  std::vector<Eigen::Isometry3d> poses = posesOf(keyframes_);
   const std::vector<std::size_t> first = firstOfParts(keyframes_.size(), all);
   std::vector<bool> fixed(poses.size());
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = first[i] == i;
@@ -74,7 +89,7 @@ GraphResult PoseGraph::reconsider() {
                [this](const auto& c) { return fragmentOf(c.from) == fragmentOf(c.to); });
   result.reason = "no loop is doubted";
   if (all.size() == constraints_.size()) return result;
-  const std::vector<Eigen::Isometry3d> poses = graduallySolved(all);
+  const std::vector<Eigen::Isometry3d> now = posesOf(keyframes_), poses = graduallySolved(all);
   result.reason = "the solver failed";
   if (poses.empty()) return result;
 
@@ -85,8 +100,10 @@ GraphResult PoseGraph::reconsider() {
   for (const PoseConstraint& c : all) {
     (!isSwitchable(c) || holds(c) ? held : doubted).push_back(c);
   }
-  result.reason = "as many hold as can";
-  if (held.size() <= constraints_.size()) return result;
+  result.reason = "what holds fits better";
+  if (costOf(all, poses, config_.max_chi_square) >= costOf(all, now, config_.max_chi_square)) {
+    return result;
+  }
   if (firstOfParts(keyframes_.size(), held) != firstOfParts(keyframes_.size(), constraints_)) {
     result.reason = "a part of the map would hang on nothing";
     return result;
@@ -100,7 +117,8 @@ GraphResult PoseGraph::reconsider() {
     if (fragmentOf(c.from) != fragmentOf(c.to)) doubted.push_back(c);
   }
   for (const PoseConstraint& c : constraints_) {
-    if (isSwitchable(c) && !holds(c)) result.refused.push_back({c, "more loops hold without it"});
+    if (isSwitchable(c) && !holds(c))
+      result.refused.push_back({c, "the others fit better without it"});
   }
   constraints_ = std::move(held);
   doubted_ = std::move(doubted);

@@ -82,10 +82,11 @@ class PoseGraph {
   ClosedLoops close(const std::vector<PoseConstraint>& loops);
 
   /// What if loops that hold are wrong, and those that were refused are right? All loops and
-  /// returns are solved with a truncated loss (graduated non-convexity: Yang et al., "Graduated
-  /// Non-Convexity for Robust Spatial Perception", RA-L 2020). Where more of them can hold together
-  /// than do, they do from now on, and the others (`refused` has those that held) are doubted.
-  /// Steps of tracking always hold.
+  /// returns are solved with a loss that is cut off at max_chi_square (graduated non-convexity:
+  /// Yang et al., "Graduated Non-Convexity for Robust Spatial Perception", RA-L 2020). Where the
+  /// sum of all errors, each loop that is left out counting as much, is less than it is now, those
+  /// that fit hold from now on, and the others (`refused` has those that held) are doubted. Steps
+  /// of tracking always hold, and count in full.
   GraphResult reconsider();
 
   /// Constraints that hold, measured anew (same keyframes, same kind): they replace the old ones,
