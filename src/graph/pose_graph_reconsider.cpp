@@ -58,28 +58,48 @@ void PoseGraph::doubt(const PoseConstraint& loop) {
   if (doubted_.size() > kMostDoubted) doubted_.erase(doubted_.begin());
 }
 
-std::vector<Eigen::Isometry3d> PoseGraph::graduallySolved(
-    const std::vector<PoseConstraint>& all) const {
+std::vector<Eigen::Isometry3d> PoseGraph::graduallySolved(const std::vector<PoseConstraint>& all,
+                                                          const std::vector<char>& counts) const {
   std::vector<Eigen::Isometry3d> poses = posesOf(keyframes_);
   const std::vector<std::size_t> first = firstOfParts(keyframes_.size(), all);
   std::vector<bool> fixed(poses.size());
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = first[i] == i;
-  std::vector<double> weights(all.size(), 1.0);
+  std::vector<double> weights(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) weights[i] = counts[i] != 0 ? 1 : kLeastWeight;
   const double c2 = config_.max_chi_square;
-  double mu = 0;
-  while (mu < kSharpest) {
+  for (double mu = 0; mu < kSharpest;) {
     if (!solvePoses(config_, all, weights, fixed, poses)) return {};
     double most = 0;
-    for (const PoseConstraint& c : all) {
-      if (isSwitchable(c)) most = std::max(most, chiSquareAt(c, poses));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const bool is_weighed = isSwitchable(all[i]) && counts[i] != 0;
+      if (is_weighed) most = std::max(most, chiSquareAt(all[i], poses));
     }
-    if (mu == 0 && most <= c2) return poses;
+    if (mu == 0 && most <= c2) break;
     mu = mu == 0 ? c2 / (2 * most - c2) : kSharper * mu;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (isSwitchable(all[i])) weights[i] = weightOf(chiSquareAt(all[i], poses), c2, mu);
+      const bool is_weighed = isSwitchable(all[i]) && counts[i] != 0;
+      if (is_weighed) weights[i] = weightOf(chiSquareAt(all[i], poses), c2, mu);
     }
   }
-  return poses;
+  for (std::size_t i = 0; i < all.size(); ++i) {  // and now all that fit
+    const bool fits = !isSwitchable(all[i]) || chiSquareAt(all[i], poses) <= c2;
+    weights[i] = fits ? 1 : kLeastWeight;
+  }
+  return solvePoses(config_, all, weights, fixed, poses) ? poses : std::vector<Eigen::Isometry3d>();
+}
+
+std::vector<Eigen::Isometry3d> PoseGraph::bestOf(const std::vector<PoseConstraint>& all) const {
+  std::vector<char> everything(all.size(), 1), what_is_doubted(all.size(), 1);
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    what_is_doubted[i] = isSwitchable(all[i]) ? 0 : 1;
+  }
+  const double c2 = config_.max_chi_square;
+  std::vector<Eigen::Isometry3d> best = posesOf(keyframes_);
+  for (const auto& counts : {everything, what_is_doubted}) {
+    auto poses = graduallySolved(all, counts);
+    if (!poses.empty() && costOf(all, poses, c2) < costOf(all, best, c2)) best = std::move(poses);
+  }
+  return best;
 }
 
 GraphResult PoseGraph::reconsider() {
@@ -89,10 +109,7 @@ GraphResult PoseGraph::reconsider() {
                [this](const auto& c) { return fragmentOf(c.from) == fragmentOf(c.to); });
   result.reason = "no loop is doubted";
   if (all.size() == constraints_.size()) return result;
-  const std::vector<Eigen::Isometry3d> now = posesOf(keyframes_), poses = graduallySolved(all);
-  result.reason = "the solver failed";
-  if (poses.empty()) return result;
-
+  const std::vector<Eigen::Isometry3d> now = posesOf(keyframes_), poses = bestOf(all);
   const auto holds = [&](const PoseConstraint& c) {
     return chiSquareAt(c, poses) <= config_.max_chi_square;
   };

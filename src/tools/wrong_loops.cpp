@@ -29,7 +29,7 @@ struct Options {
   std::string sequence, truth;
   std::string detector = "embedded";
   int loops = 5;
-  int from = 5, to = 30;  ///< first keyframes of the two stretches
+  int from = 5, to = 60;  ///< first keyframes of the two stretches
   unsigned seed = 1;
 };
 

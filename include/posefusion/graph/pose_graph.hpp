@@ -139,8 +139,13 @@ class PoseGraph {
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
   void doubt(const PoseConstraint& loop);
-  /// The poses where as many as possible of these constraints hold; empty: the solver failed.
-  std::vector<Eigen::Isometry3d> graduallySolved(const std::vector<PoseConstraint>& all) const;
+  /// The poses where those of these constraints that count fit best, by graduated non-convexity,
+  /// with those of the others that fit there too; empty: the solver failed.
+  std::vector<Eigen::Isometry3d> graduallySolved(const std::vector<PoseConstraint>& all,
+                                                 const std::vector<char>& counts) const;
+  /// The best of three: as the poses are; where all count (soft odometry may bend so far that
+  /// contradicting loops all fit); where loops that hold do not count, but doubted ones do.
+  std::vector<Eigen::Isometry3d> bestOf(const std::vector<PoseConstraint>& all) const;
   bool isMet(const PoseConstraint& loop) const;
   bool isOnlyWay(const PoseConstraint& step) const;
   bool isWorthMoving(const std::vector<Keyframe>& corrected) const;
