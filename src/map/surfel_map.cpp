@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -14,7 +13,6 @@ namespace {
 // in vain, and no single step moves much.
 constexpr std::size_t kChunk = 128;
 constexpr std::size_t kGrowthShare = 8;
-constexpr std::size_t kGrain = 256;  // blocks
 // What an integer can count; at any sensible side farther than floats tell one block from the next.
 constexpr float kCellLimit = 1e9F;
 
@@ -24,10 +22,6 @@ std::int32_t cellOf(float x, float side) {
 }
 
 std::size_t roundedUp(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
-
-std::size_t memoryOf(const SurfelBlock& block) {
-  return sizeof(SurfelBlock) + block.surfels.x.capacity() * SurfelArrays::bytesPerSurfel();
-}
 
 /// Least and largest of some numbers, of which there is at least one.
 POSEFUSION_SIMD_CLONES
@@ -200,64 +194,9 @@ void SurfelMap::refit(SurfelBlock& block) const {
   fit(block.surfels, 0, block);
 }
 
-void SurfelMap::move(const Mover& mover, const std::vector<std::uint32_t>& blocks) {
-  parallelFor(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const SurfelBlock& seen = blocks_[blocks[k]];
-      const int fragment =
-          mover.fragment_after ? mover.fragment_after(seen.fragment) : seen.fragment;
-      const bool moves = mover.moves(seen);
-      if (!moves && fragment == seen.fragment) continue;
-      SurfelBlock& block = blocks_.change(blocks[k]);
-      if (moves) mover.move(block.surfels, block.fragment);
-      block.fragment = fragment;
-      refit(block);
-    }
-  });
-  if (!mover.fragment_after) return;
-  // Where a fragment has gone, new surfels come into new blocks: its cubes are not those.
-  for (auto entry = index_.begin(); entry != index_.end();) {
-    const int fragment = entry->first.fragment;
-    entry = mover.fragment_after(fragment) == fragment ? std::next(entry) : index_.erase(entry);
-  }
-}
-
-SurfelMap SurfelMap::resting(int since_frame) const {
-  SurfelMap copy(config_, block_side_m_, sensor_);
-  copy.blocks_ = blocks_;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (blocks_[i].changed >= since_frame) copy.blocks_.drop(i);
-  }
-  copy.frame_ = frame_;
-  copy.worth_ = worth_;
-  copy.active_frames_ = active_frames_;
-  copy.unstable_frames_ = unstable_frames_;
-  return copy;
-}
-
-std::vector<std::uint32_t> SurfelMap::takeUp(const SurfelMap& before, SurfelMap& corrected) {
-  std::vector<std::uint32_t> changed;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!blocks_.isShared(i, before.blocks_)) changed.push_back(static_cast<std::uint32_t>(i));
-  }
-  memory_ += deterministicSum<std::size_t>(
-      before.blocks_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::size_t more = 0;  // modulo 2^64: may be less
-        for (std::size_t i = begin; i < end; ++i) {
-          const bool is_new = !corrected.blocks_.isShared(i, before.blocks_);
-          if (!is_new || !blocks_.isShared(i, before.blocks_)) continue;
-          blocks_.swap(i, corrected.blocks_);
-          blocks_.change(i).changed = frame_;
-          more += memoryOf(blocks_[i]) - memoryOf(before.blocks_[i]);
-        }
-        return more;
-      });
-  return changed;
-}
-
 void SurfelMap::countMemory() {
   memory_ = 0;
-  for (const SurfelBlock& block : blocks_) memory_ += memoryOf(block);
+  for (const SurfelBlock& block : blocks_) memory_ += block.memory();
 }
 
 void SurfelMap::clear() {

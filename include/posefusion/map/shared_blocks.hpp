@@ -21,6 +21,11 @@ struct SurfelBlock {
   float largest_radius = 0;    ///< m
   bool any_unstable = false;   ///< false: all are stable
   int changed = -1;            ///< frame of the last change (or somewhat later): what to save
+
+  /// That it holds, used or reserved (bytes).
+  std::size_t memory() const {
+    return sizeof(SurfelBlock) + surfels.x.capacity() * SurfelArrays::bytesPerSurfel();
+  }
 };
 
 /// A list of blocks. Copies of the list share the blocks: whoever changes one that is shared gets a
