@@ -53,9 +53,9 @@ TEST(MapDatabase, RefusesWhatAMapCannotHold) {
   const auto said = [](const std::string& error, const std::string& text) {
     return error.find(text) != std::string::npos;
   };
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=3"), "a newer posefusion made it"));
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=1"), "other tables")) << "those of version 2";
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=0"), "a map of version 0, expected 1 to 2"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=4"), "a newer posefusion made it"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=1"), "other tables")) << "those of version 3";
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=0"), "a map of version 0, expected 1 to 3"));
   EXPECT_TRUE(
       said(errorAfter("UPDATE blocks SET fragment=-1 WHERE id=2"), "block 2 is of fragment"));
   EXPECT_TRUE(said(errorAfter("UPDATE keyframes SET fragment=7 WHERE id=1"), "fragment is 7"));

@@ -99,19 +99,22 @@ TEST(MapUpgrade, AFileOfVersion1HasItsFragmentsApart) {
   EXPECT_TRUE(readFile(path) == before) << "reading changes nothing";
 }
 
-TEST(MapUpgrade, AFileOfVersion1GoesOnAsOneOfVersion2) {
+/// All that a file has, as the first write of one that goes on in it.
+MapUpdate everythingIn(const MapReader& reader) {
+  MapUpdate update;
+  static_cast<MapContent&>(update) = reader.content();
+  SurfelMap map((MapConfig()));
+  map.restore(reader.surfels(), update.frame);
+  update.blocks = changedBlocks(map, -1);
+  update.block_count = static_cast<std::uint32_t>(map.blocks().size());
+  update.frames.clear();
+  return update;
+}
+
+TEST(MapUpgrade, AFileOfVersion1GoesOnAsOneOfTheLatest) {
   const TemporaryFolder folder;
   const std::string path = OldMap().saved(folder);
-  MapUpdate update = OldMap().update;
-  {
-    const MapReader reader(path);
-    static_cast<MapContent&>(update) = reader.content();
-    SurfelMap map((MapConfig()));
-    map.restore(reader.surfels(), update.frame);
-    update.blocks = changedBlocks(map, -1);
-    update.block_count = static_cast<std::uint32_t>(map.blocks().size());
-  }
-  update.frames.clear();
+  const MapUpdate update = everythingIn(MapReader(path));
   { const MapWriter unused(path, MapWriter::Mode::extend); }
   expectUpgraded(MapReader(path));  // still whole: nothing was written
   MapWriter(path, MapWriter::Mode::extend).write(update);
@@ -121,6 +124,25 @@ TEST(MapUpgrade, AFileOfVersion1GoesOnAsOneOfVersion2) {
   EXPECT_EQ(reader.counts().images, 2U);
   MapWriter(path, MapWriter::Mode::extend).write(update);
   expectUpgraded(MapReader(path));
+}
+
+TEST(MapUpgrade, AFileOfVersion2GoesOnAndHasRetiredKeyframesFromThenOn) {
+  const TemporaryFolder folder;
+  const std::string path = pf::saved(folder, ExampleMap().update, "old.pfdb");
+  makeSecondVersion(path);
+  const std::string before = readFile(path);
+  MapUpdate update = everythingIn(MapReader(path));
+  EXPECT_TRUE(readFile(path) == before) << "reading changes nothing";
+  ASSERT_EQ(update.keyframes.size(), 2U);
+  EXPECT_EQ(MapReader(path).counts().images, 2U);
+  EXPECT_FALSE(update.keyframes[1].isRetired());
+  update.keyframes[1].follows = 0;
+  update.constraints.clear();
+  MapWriter(path, MapWriter::Mode::extend).write(update);
+  const MapReader reader(path);
+  EXPECT_EQ(reader.content().keyframes[1].follows, 0);
+  EXPECT_EQ(reader.counts().images, 1U) << "its pictures are gone";
+  EXPECT_FALSE(reader.images(0).grey.empty());
 }
 
 TEST(MapUpgrade, AFileOfVersion1WithOtherTablesIsRefused) {

@@ -192,7 +192,7 @@ TEST_F(SavedMapFile, ACameraElsewhereIsFoundAndTheMapGrows) {
   EXPECT_EQ(more.constraints.size(), graph.constraints().size());
 }
 
-TEST_F(SavedMapFile, AMapOfVersion1GoesOnAsOneOfVersion2) {
+TEST_F(SavedMapFile, AMapOfVersion1GoesOnAsOneOfTheLatest) {
   const std::string path = copy();
   makeFirstVersion(path);
   Session session;

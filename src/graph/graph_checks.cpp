@@ -10,6 +10,22 @@
 #include "posefusion/core/se3.hpp"
 
 namespace pf {
+namespace {
+
+/// A retired keyframe follows one in use, of its fragment.
+void throwUnlessCarried(const Keyframe& k, const std::vector<Keyframe>& keyframes) {
+  if (!k.isRetired()) return;
+  const auto carrier = static_cast<std::size_t>(k.follows);
+  if (carrier < keyframes.size() && !keyframes[carrier].isRetired() &&
+      keyframes[carrier].fragment == k.fragment) {
+    return;
+  }
+  throw std::invalid_argument("keyframe " + std::to_string(k.id) + ": follows " +
+                              std::to_string(k.follows) +
+                              ", expected a keyframe in use of the same fragment");
+}
+
+}  // namespace
 
 void throwUnlessUsable(const Keyframe& keyframe) {
   const std::string name = "keyframe " + std::to_string(keyframe.id);
@@ -54,9 +70,15 @@ void checkGraph(const std::vector<Keyframe>& keyframes,
                                     ", expected less than the number of keyframes");
       }
     }
+    for (const Keyframe& k : keyframes) throwUnlessCarried(k, keyframes);
     for (const PoseConstraint& c : constraints) {
       throwUnlessBetween(c, keyframes.size());
       throwUnlessUsable(c);
+      for (const int end : {c.from, c.to}) {
+        if (!keyframes[static_cast<std::size_t>(end)].isRetired()) continue;
+        throw std::invalid_argument("constraint " + std::to_string(c.from) + " -> " +
+                                    std::to_string(c.to) + ": ends at a retired keyframe");
+      }
     }
   } catch (const std::invalid_argument& error) {
     throw InputError(error.what());

@@ -68,9 +68,14 @@ std::vector<Deformation> PoseGraph::takeUp(PoseGraph corrected,
   }
   std::move(keyframes_.begin() + static_cast<std::ptrdiff_t>(known), keyframes_.end(),
             std::back_inserter(corrected.keyframes_));
-  std::move(constraints_.begin() + static_cast<std::ptrdiff_t>(corrected.handed_over_),
-            constraints_.end(), std::back_inserter(corrected.constraints_));
-  corrected.waiting_ = std::move(waiting_);
+  const auto first_added =
+      constraints_.begin() + static_cast<std::ptrdiff_t>(corrected.handed_over_);
+  for (auto added = first_added; added != constraints_.end(); ++added) {
+    if (const auto c = corrected.inUse(*added)) corrected.constraints_.push_back(*c);
+  }
+  for (const PoseConstraint& waits : waiting_) {
+    if (const auto c = corrected.inUse(waits)) corrected.waiting_.push_back(*c);
+  }
   *this = std::move(corrected);
   return followed;
 }

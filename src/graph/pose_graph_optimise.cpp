@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "graph_attempt.hpp"
+#include "graph_checks.hpp"
 #include "pose_solver.hpp"
 
 namespace pf {
@@ -160,6 +161,7 @@ bool PoseGraph::isWorthMoving(const std::vector<Keyframe>& corrected) const {
 void PoseGraph::accept(Attempt& attempt, GraphResult& result) {
   result.accepted = true;
   result.errors = std::move(attempt.errors);
+  moveRetired(keyframes_, attempt.keyframes);
   ++version_;
   result.deformation = deformationTo(attempt.keyframes);
   keyframes_ = std::move(attempt.keyframes);
@@ -209,10 +211,13 @@ ClosedLoops PoseGraph::close(const std::vector<PoseConstraint>& loops) {
     closed.deformations.push_back(std::move(result.deformation));
     return true;
   };
-  for (const PoseConstraint& loop : loops) {
-    if (fragmentOf(loop.from) == fragmentOf(loop.to)) {
-      addLoop(loop);
-    } else if (take(joinFragment(loop))) {
+  for (const PoseConstraint& told : loops) {
+    throwUnlessBetween(told, keyframes_.size());
+    const auto loop = inUse(told);
+    if (!loop) continue;
+    if (fragmentOf(loop->from) == fragmentOf(loop->to)) {
+      addLoop(*loop);
+    } else if (take(joinFragment(*loop))) {
       ++closed.joined;
     }
   }

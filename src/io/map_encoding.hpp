@@ -26,6 +26,12 @@ SurfelArrays decodeSurfels(std::string_view bytes, int last_frame);
 cv::Mat decodePng(std::string_view bytes, const cv::Size& largest);
 void decodeIntrinsics(std::string_view bytes, PinholeCamera& camera);
 
+/// Name of the blob that holds what the images of a keyframe do not.
+constexpr char kKeyframeBlobs[] = "keyframe/";
+inline std::string keyframeBlob(std::int64_t keyframe) {
+  return kKeyframeBlobs + std::to_string(keyframe);
+}
+
 /// Tells changed bytes with 64 bits (FNV-1a over words).
 std::int64_t checksumOf(std::string_view bytes);
 

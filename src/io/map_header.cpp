@@ -12,10 +12,12 @@ namespace {
 
 void checkTables(const SqliteDatabase& database, std::int64_t version) {
   std::set<std::string> expected(kMapTables.begin(), kMapTables.end()), found;
-  if (version == kFirstMapVersion) {
-    expected.erase(kMapTables[kBlocksTable]);
-    expected.insert(kFirstBlocksTable);
-  }
+  const auto had = [&](std::size_t table, const char* otherwise) {
+    expected.erase(kMapTables[table]);
+    expected.insert(otherwise);
+  };
+  if (version < kFragmentsVersion) had(kBlocksTable, kFirstBlocksTable);
+  if (version < kRetiredVersion) had(kKeyframesTable, kFirstKeyframesTable);
   SqliteStatement rows = database.prepare("SELECT sql FROM sqlite_master");
   while (rows.step()) found.emplace(rows.blob(0));
   if (found != expected) throw InputError(database.path() + ": has other tables than a map");

@@ -23,8 +23,8 @@ void readState(const SqliteDatabase& database, MapContent& content) {
   stateAt(row, content);
 }
 
-void readKeyframes(const SqliteDatabase& database, MapContent& content) {
-  SqliteStatement row = select(database, kKeyframeColumns, "keyframes ORDER BY id");
+void readKeyframes(const SqliteDatabase& database, std::int64_t version, MapContent& content) {
+  SqliteStatement row = select(database, keyframeColumns(version), "keyframes ORDER BY id");
   while (row.step()) {
     content.keyframes.push_back(keyframeAt(row));
     const Keyframe& k = content.keyframes.back();
@@ -87,10 +87,11 @@ MapContent MapReader::content() const {
   return state_->named([&] {
     const SqliteDatabase& database = state_->database;
     MapContent content = state_->state();
-    readKeyframes(database, content);
+    readKeyframes(database, state_->version, content);
     SqliteStatement constraint = select(database, kConstraintColumns, "constraints ORDER BY id");
     while (constraint.step()) content.constraints.push_back(constraintAt(constraint));
-    if (state_->version < kMapVersion) upgradeKeyframes(content.keyframes, content.constraints);
+    if (state_->version < kFragmentsVersion)
+      upgradeKeyframes(content.keyframes, content.constraints);
     readFrames(database, content);
     SqliteStatement blob = database.prepare("SELECT name, data FROM blobs");
     while (blob.step()) content.blobs.emplace(blob.blob(0), blob.blob(1));
@@ -114,7 +115,7 @@ std::vector<FragmentSurfels> MapReader::surfels() const {
       }
       parts.back().surfels.append(*block.surfels);
     }
-    if (state_->version == kMapVersion || parts.empty()) return parts;
+    if (state_->version >= kFragmentsVersion || parts.empty()) return parts;
     return upgradeSurfels(parts.front().surfels, content().keyframes);
   });
 }

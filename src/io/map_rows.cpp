@@ -44,6 +44,11 @@ void stateAt(const SqliteStatement& row, MapContent& content) {
   }
 }
 
+const char* keyframeColumns(std::int64_t version) {
+  return version < kRetiredVersion ? "id, fragment, stamp_ns, map_frame, t_map_camera, -1"
+                                   : "id, fragment, stamp_ns, map_frame, t_map_camera, follows";
+}
+
 Keyframe keyframeAt(const SqliteStatement& row) {
   Keyframe k;
   k.id = narrow(row.integer(0), "a keyframe");
@@ -51,6 +56,10 @@ Keyframe keyframeAt(const SqliteStatement& row) {
   k.stamp_ns = row.integer(2);
   k.map_frame = narrow(row.integer(3), "the frame of a keyframe");
   k.T_map_camera = decodeTransform(row.blob(4));
+  k.follows = narrow(row.integer(5), "what a keyframe follows");
+  if (k.follows < -1) {
+    throw InputError("keyframe " + std::to_string(k.id) + " follows " + std::to_string(k.follows));
+  }
   return k;
 }
 
@@ -73,7 +82,8 @@ FrameRecord frameAt(const SqliteStatement& row) {
 }
 
 const char* blockColumns(std::int64_t version) {
-  return version < kMapVersion ? "id, surfels, checksum, 0" : "id, surfels, checksum, fragment";
+  return version < kFragmentsVersion ? "id, surfels, checksum, 0"
+                                     : "id, surfels, checksum, fragment";
 }
 
 BlockRecord blockAt(const SqliteStatement& row, int last_frame) {

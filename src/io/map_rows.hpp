@@ -17,7 +17,8 @@ constexpr char kStateColumns[] =
 /// Into `content`: all that this one row holds.
 void stateAt(const SqliteStatement& row, MapContent& content);
 
-constexpr char kKeyframeColumns[] = "id, fragment, stamp_ns, map_frame, t_map_camera";
+/// Of the version of a file; before version 3 no keyframe was retired.
+const char* keyframeColumns(std::int64_t version);
 Keyframe keyframeAt(const SqliteStatement& row);
 
 constexpr char kConstraintColumns[] = "kind, from_keyframe, to_keyframe, t_from_to, covariance";

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "map_encoding.hpp"
 #include "map_header.hpp"
 #include "map_rows.hpp"
 #include "map_schema.hpp"
@@ -77,11 +78,13 @@ void Salvage::gatherState() {
 
 void Salvage::gatherKeyframes() {
   std::int64_t expected = 0;
-  forEachRow("keyframes", "keyframes", "id", kKeyframeColumns,
+  forEachRow("keyframes", "keyframes", "id", keyframeColumns(version_),
              [&](std::int64_t id, const SqliteStatement& row) {
                Keyframe k = keyframeAt(row);
                k.id = static_cast<int>(found_.keyframes.size());
-               check({k});
+               Keyframe alone = k;
+               alone.follows = -1;
+               check({alone});
                if (id != expected) after_a_gap_.insert(k.id);
                expected = id + 1;
                numbers_[id] = k.id;
@@ -89,10 +92,32 @@ void Salvage::gatherKeyframes() {
                found_.keyframes.push_back(k);
              });
   if (found_.keyframes.empty()) throw InputError("no keyframe of it can be read");
+  findCarriers();
   if (!after_a_gap_.empty()) {
     lost_.push_back("keyframes before " + std::to_string(after_a_gap_.size()) +
                     " of the others: tied over loosely");
   }
+}
+
+/// A retired keyframe whose carrier is lost is in use again.
+void Salvage::findCarriers() {
+  for (Keyframe& k : found_.keyframes) {
+    if (!k.isRetired()) continue;
+    const auto carrier = numbers_.find(k.follows);
+    k.follows = -1;
+    if (carrier == numbers_.end()) {
+      after_a_gap_.insert(k.id);
+      continue;
+    }
+    const Keyframe& found = found_.keyframes[static_cast<std::size_t>(carrier->second)];
+    if (!found.isRetired() && found.fragment == k.fragment) k.follows = found.id;
+  }
+}
+
+/// The keyframe itself, or the one that it follows.
+int Salvage::inUse(int keyframe) const {
+  const Keyframe& k = found_.keyframes[static_cast<std::size_t>(keyframe)];
+  return k.isRetired() ? k.follows : keyframe;
 }
 
 int Salvage::newNumber(std::int64_t keyframe) const {
@@ -113,18 +138,21 @@ void Salvage::gatherConstraints() {
                alone.from = 0;
                alone.to = c.from == c.to ? 0 : 1;
                check({Keyframe(), Keyframe()}, {alone});
+               if (inUse(c.from) != c.from || inUse(c.to) != c.to) {
+                 throw InputError("a constraint ends at a retired keyframe");
+               }
                found_.constraints.push_back(c);
              });
-  if (version_ < kMapVersion) upgradeKeyframes(found_.keyframes, found_.constraints);
+  if (version_ < kFragmentsVersion) upgradeKeyframes(found_.keyframes, found_.constraints);
   bridgeGaps();
 }
 
 void Salvage::bridgeGaps() {
   for (const int to : after_a_gap_) {
     if (to == 0) continue;
-    const Keyframe& before = found_.keyframes[static_cast<std::size_t>(to - 1)];
-    const Keyframe& after = found_.keyframes[static_cast<std::size_t>(to)];
-    if (before.fragment != after.fragment) continue;
+    const Keyframe& before = found_.keyframes[static_cast<std::size_t>(inUse(to - 1))];
+    const Keyframe& after = found_.keyframes[static_cast<std::size_t>(inUse(to))];
+    if (before.fragment != after.fragment || before.id == after.id) continue;
     PoseConstraint bridge;
     bridge.kind = ConstraintKind::odometry;
     bridge.from = before.id;
@@ -155,7 +183,7 @@ void Salvage::gatherBlocks() {
                    found_.frame = std::max(found_.frame, frame);
                  }
                }
-               if (version_ < kMapVersion) return old.append(*block.surfels);
+               if (version_ < kFragmentsVersion) return old.append(*block.surfels);
                found_.blocks.push_back(std::move(block));
              });
   for (FragmentSurfels& part : upgradeSurfels(old, found_.keyframes)) {
@@ -183,7 +211,7 @@ void Salvage::gatherBlobs() {
     SqliteStatement row = database_.prepare("SELECT name, data FROM blobs");
     while (row.step()) {
       const std::string name(row.blob(0));
-      constexpr std::string_view kOfKeyframe = "keyframe/";
+      constexpr std::string_view kOfKeyframe = kKeyframeBlobs;
       if (name == kClosedBlob) continue;
       if (name.rfind(kOfKeyframe, 0) != 0) {
         found_.blobs.emplace(name, row.blob(1));
@@ -191,7 +219,7 @@ void Salvage::gatherBlobs() {
       }
       const auto number = numbers_.find(std::atoll(name.c_str() + kOfKeyframe.size()));
       if (number == numbers_.end()) continue;
-      found_.blobs.emplace(std::string(kOfKeyframe) + std::to_string(number->second), row.blob(1));
+      found_.blobs.emplace(keyframeBlob(number->second), row.blob(1));
     }
   } catch (const InputError& error) {
     lost_.push_back(std::string("some of what belongs to keyframes (") + error.what() + ")");

@@ -33,6 +33,8 @@ class Salvage {
 
   void gatherState();
   void gatherKeyframes();
+  void findCarriers();
+  int inUse(int keyframe) const;
   void gatherConstraints();
   void bridgeGaps();
   void gatherFrames();

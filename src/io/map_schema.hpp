@@ -8,7 +8,7 @@ namespace pf {
 
 /// "PFdb" in the header of the file, and the version of what follows.
 constexpr std::int64_t kMapApplication = 0x50466462;
-constexpr std::int64_t kMapVersion = 2;
+constexpr std::int64_t kMapVersion = 3;
 constexpr std::int64_t kFirstMapVersion = 1;  ///< the oldest that is read (see map_upgrade.hpp)
 
 /// The tables as SQLite keeps them: a file with any other is refused, so that nothing hostile can
@@ -19,7 +19,7 @@ constexpr std::array<const char*, 7> kMapTables = {
     "CREATE TABLE blocks(id INTEGER PRIMARY KEY, fragment INTEGER, surfels BLOB,"
     " checksum INTEGER)",
     "CREATE TABLE keyframes(id INTEGER PRIMARY KEY, fragment INTEGER, stamp_ns INTEGER,"
-    " map_frame INTEGER, t_map_camera BLOB)",
+    " map_frame INTEGER, t_map_camera BLOB, follows INTEGER)",
     "CREATE TABLE images(keyframe INTEGER PRIMARY KEY, grey BLOB, depth BLOB)",
     "CREATE TABLE constraints(id INTEGER PRIMARY KEY, kind INTEGER, from_keyframe INTEGER,"
     " to_keyframe INTEGER, t_from_to BLOB, covariance BLOB)",
@@ -27,8 +27,16 @@ constexpr std::array<const char*, 7> kMapTables = {
     " t_keyframe_camera BLOB)",
     "CREATE TABLE blobs(name TEXT PRIMARY KEY, data BLOB) WITHOUT ROWID"};
 
-constexpr std::size_t kBlocksTable = 1;  ///< of those, what version 1 had otherwise:
+/// Of those, what older versions had otherwise: of blocks version 1, of keyframes versions 1 and 2.
+/// @{
+constexpr std::size_t kBlocksTable = 1, kKeyframesTable = 2;
 constexpr const char* kFirstBlocksTable =
     "CREATE TABLE blocks(id INTEGER PRIMARY KEY, surfels BLOB, checksum INTEGER)";
+constexpr const char* kFirstKeyframesTable =
+    "CREATE TABLE keyframes(id INTEGER PRIMARY KEY, fragment INTEGER, stamp_ns INTEGER,"
+    " map_frame INTEGER, t_map_camera BLOB)";
+constexpr std::int64_t kFragmentsVersion = 2;  ///< the first with fragments of blocks
+constexpr std::int64_t kRetiredVersion = 3;    ///< the first with retired keyframes
+/// @}
 
 }  // namespace pf

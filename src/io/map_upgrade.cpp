@@ -68,6 +68,8 @@ std::vector<FragmentSurfels> upgradeSurfels(const SurfelArrays& surfels,
 void upgradeTables(const SqliteDatabase& database) {
   database.run("DROP TABLE blocks");
   database.run(kMapTables[kBlocksTable]);
+  database.run("DROP TABLE keyframes");
+  database.run(kMapTables[kKeyframesTable]);
   database.run("PRAGMA user_version=" + std::to_string(kMapVersion));
 }
 

@@ -24,8 +24,8 @@ void upgradeKeyframes(std::vector<Keyframe>& keyframes,
 std::vector<FragmentSurfels> upgradeSurfels(const SurfelArrays& surfels,
                                             const std::vector<Keyframe>& keyframes);
 
-/// Makes the tables of version 1 those of version 2, without blocks: the caller writes all of them
-/// and all keyframes in the same transaction.
+/// Makes the tables of an older version those of the present one, without blocks and keyframes: the
+/// caller writes all of them in the same transaction.
 void upgradeTables(const SqliteDatabase& database);
 
 }  // namespace pf

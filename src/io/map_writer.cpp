@@ -47,7 +47,7 @@ void emptyLog(const SqliteDatabase& database) {
 
 bool same(const Keyframe& a, const Keyframe& b) {
   return a.fragment == b.fragment && a.stamp_ns == b.stamp_ns && a.map_frame == b.map_frame &&
-         a.T_map_camera.matrix() == b.T_map_camera.matrix();
+         a.follows == b.follows && a.T_map_camera.matrix() == b.T_map_camera.matrix();
 }
 
 bool same(const PoseConstraint& a, const PoseConstraint& b) {
@@ -97,11 +97,17 @@ void writeBlocks(const SqliteDatabase& database, const MapUpdate& update) {
   }
 }
 
+void dropPictures(const SqliteDatabase& database, std::int64_t keyframe) {
+  const std::string id = std::to_string(keyframe);
+  database.run("DELETE FROM images WHERE keyframe = " + id);
+  database.run("DELETE FROM blobs WHERE name = '" + keyframeBlob(keyframe) + "'");
+}
+
 void writeKeyframes(const SqliteDatabase& database, const MapUpdate& update,
                     const std::vector<Keyframe>& written) {
   cutTable(database, "keyframes", update.keyframes.size());
   SqliteStatement row =
-      database.prepare("INSERT OR REPLACE INTO keyframes VALUES(?1, ?2, ?3, ?4, ?5)");
+      database.prepare("INSERT OR REPLACE INTO keyframes VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   writeChanged(update.keyframes, written, [&](std::int64_t id, const Keyframe& k) {
     const std::string pose = encode(k.T_map_camera);
     row.bind(1, id);
@@ -109,7 +115,9 @@ void writeKeyframes(const SqliteDatabase& database, const MapUpdate& update,
     row.bind(3, k.stamp_ns);
     row.bind(4, std::int64_t{k.map_frame});
     row.bind(5, pose);
+    row.bind(6, std::int64_t{k.follows});
     row.run();
+    if (k.isRetired()) dropPictures(database, id);
   });
 }
 

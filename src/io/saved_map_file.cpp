@@ -24,9 +24,6 @@ constexpr char kCalibration[] = "calibration";
 constexpr std::size_t kPixels = std::size_t{Thumbnail::kWidth} * Thumbnail::kHeight;
 constexpr std::size_t kThumbnailBytes = 1 + kPixels * (3 + sizeof(float));
 
-/// Name of the blob that holds what keyframe images do not.
-std::string blobName(std::int64_t keyframe) { return "keyframe/" + std::to_string(keyframe); }
-
 std::string encodeThumbnail(const KeyframeView& view) {
   std::string bytes(1, view.nobody_in_view ? '\1' : '\0');
   const Thumbnail& small = view.thumbnail;
@@ -50,7 +47,7 @@ void decodeThumbnail(const std::string& bytes, KeyframeView& view) {
 std::vector<KeyframeView> readViews(const MapReader& reader, const MapContent& content) {
   std::vector<KeyframeView> views;
   for (const Keyframe& keyframe : content.keyframes) {
-    const auto blob = content.blobs.find(blobName(keyframe.id));
+    const auto blob = content.blobs.find(keyframeBlob(keyframe.id));
     const KeyframeImages images = reader.images(keyframe.id);
     if (blob == content.blobs.end() || images.grey.empty()) continue;
     KeyframeView view;
@@ -191,7 +188,7 @@ MapUpdate MapRecording::changes(const Mapper& mapper) const {
     const bool is_known = view.id < written_.keyframes;
     if (is_known && written_.depth_version == mapper.depthVersion()) continue;
     update.images.push_back({static_cast<int>(view.id), view.intensity, view.depth_mm});
-    update.blobs[blobName(view.id)] = encodeThumbnail(view);
+    update.blobs[keyframeBlob(view.id)] = encodeThumbnail(view);
   }
   if (mapper.calibration()) update.blobs[kCalibration] = calibrationText(*mapper.calibration());
   if (mapper.placed()) update.blobs[kPlace] = encode(*mapper.placed());

@@ -77,6 +77,18 @@ void LoopCloser::addKeyframe(const KeyframeView& view) {
   counts_.ferns = ferns_.size();
 }
 
+void LoopCloser::forget(const std::vector<int>& ids) {
+  if (ids.empty()) return;
+  const auto isForgotten = [&](std::int64_t id) {
+    return std::binary_search(ids.begin(), ids.end(), static_cast<int>(id));
+  };
+  keyframes_.erase(std::remove_if(keyframes_.begin(), keyframes_.end(),
+                                  [&](const Keyframe& k) { return isForgotten(k.view.id); }),
+                   keyframes_.end());
+  ferns_.forget(isForgotten);
+  counts_.ferns = ferns_.size();
+}
+
 void LoopCloser::setPoses(const std::vector<MapPose>& poses) {
   const auto last = keyframes_.empty() ? -1 : keyframes_.back().view.id;
   if (static_cast<std::int64_t>(poses.size()) <= last) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <random>
+#include <utility>
 
 #include "bytes.hpp"
 #include "posefusion/core/error.hpp"
@@ -107,6 +108,16 @@ bool FernDatabase::harvest(std::int64_t id, const FernCode& code) {
   if (!best.empty() && best[0].dissimilarity <= config_.novelty) return false;
   store(id, code);
   return true;
+}
+
+void FernDatabase::forget(const std::function<bool(std::int64_t id)>& is_forgotten) {
+  if (std::none_of(ids_.begin(), ids_.end(), is_forgotten)) return;
+  const std::vector<std::int64_t> ids = std::exchange(ids_, {});
+  const std::vector<FernCode> codes = std::exchange(codes_, {});
+  for (auto& list : lists_) list.clear();
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (!is_forgotten(ids[k])) store(ids[k], codes[k]);
+  }
 }
 
 void FernDatabase::store(std::int64_t id, const FernCode& code) {

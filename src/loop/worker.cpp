@@ -108,6 +108,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
     begin();
     for (const KeyframeView& view : *question.known) addKeyframe(view);
   }
+  closer_.forget(question.retired);
   if (!question.corrected.empty()) {
     closer_.setPoses(question.corrected);
     learner_.setPoses(question.corrected);
@@ -120,12 +121,14 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
     if (question.step) {
       for (const PoseConstraint& step : closer_.remeasure({*question.step})) answer.step = step;
     }
-    answer.loops = closer_.findLoops();
+    if (question.seeks_loops) answer.loops = closer_.findLoops();
     answer.verification_ms = watch.lapMs();
   }
   learn(question, answer);
   if (question.place) {
     answer.asked_for_place = true;
+  }
+  if (question.place && !(question.place_is_void && *question.place_is_void)) {
     answer.place = findPlace(*question.place);
     ++counts_.searched;
     counts_.found += answer.place ? 1 : 0;

@@ -28,6 +28,7 @@ KeyframeMsg toWire(const LoopQuestionMessage& message) {
     wire.corrected.push_back(toPose(pose.T_map_camera));
     wire.corrected_fragments.push_back(static_cast<std::uint32_t>(pose.fragment));
   }
+  wire.retired.assign(question.retired.begin(), question.retired.end());
   wire.known = question.known ? static_cast<std::uint32_t>(question.known->size()) : 0;
   pf::MapPose pose;
   if (question.place) pose = question.place->last;

@@ -13,7 +13,9 @@ int BackEnd::nearest(const MapPose& pose, int before) const {
   int nearest = -1;
   double least = std::numeric_limits<double>::max();
   for (const Keyframe& keyframe : graph_.keyframes()) {
-    if (keyframe.fragment != pose.fragment || keyframe.id >= before) continue;
+    if (keyframe.fragment != pose.fragment || keyframe.id >= before || keyframe.isRetired()) {
+      continue;
+    }
     const Eigen::Isometry3d step = keyframe.T_map_camera.inverse() * pose.T_map_camera;
     const double far = step.translation().norm() + angleOf(step);
     if (far >= least) continue;

@@ -49,7 +49,8 @@ CorrectedMap prepare(MapCorrection correction) {
                     correction.map,
                     std::move(correction.map),
                     std::move(correction.depth),
-                    std::move(correction.unswept)};
+                    std::move(correction.unswept),
+                    {}};
   made.closed = made.graph.close(correction.loops);
   if (!correction.remeasured.empty()) {
     GraphResult result = made.graph.remeasure(correction.remeasured);
@@ -69,6 +70,7 @@ CorrectedMap prepare(MapCorrection correction) {
   }
   if (!made.swept.empty()) removeYoungerLayers(made.map, made.swept);
   if (made.depth) improve(*made.depth, made);
+  made.retired = made.graph.retire();
   return made;
 }
 

@@ -213,6 +213,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.keyframes_moved = s.place_is_asked = s.closer_is_old = false;
   s.may_change = true;
   s.views.clear();
+  s.retired.clear();
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();

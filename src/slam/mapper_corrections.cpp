@@ -72,6 +72,7 @@ void Mapper::State::finishCorrection(CorrectedMap& corrected) {
   unswept = without(unswept, without(corrected.swept, changed));
   follow(deformations, changed, corrected.lays_layers);
   if (corrected.depth) finishDepth(*corrected.depth, changed);
+  retireViews(corrected.retired);
   for (const auto& [step, version] : std::exchange(wanted_steps, {})) retrack(step, version);
 }
 
@@ -89,6 +90,16 @@ void Mapper::State::finishDepth(DepthImprovement& depth,
   }
   noteImproved(depth);
   depthHasChanged(depth.of_frames);
+}
+
+/// Pictures of keyframes that others stand for.
+void Mapper::State::retireViews(const std::vector<int>& ids) {
+  const auto isRetired = [&](const KeyframeView& view) {
+    return std::binary_search(ids.begin(), ids.end(), static_cast<int>(view.id));
+  };
+  views.erase(std::remove_if(views.begin(), views.end(), isRetired), views.end());
+  retired.insert(retired.end(), ids.begin(), ids.end());
+  std::sort(retired.begin(), retired.end());
 }
 
 /// A step of tracking as its pictures have it: what hangs on it is what was seen last.

@@ -63,6 +63,7 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
 void Mapper::State::tellCloser() {
   if (!question) question.emplace();
   question->stamp_ns = last_stamp_ns;
+  if (!retired.empty()) question->retired = std::exchange(retired, {});
   if (std::exchange(closer_is_old, false)) {
     question->known.emplace(views.begin(), views.end());
     keyframes_moved = true;
@@ -116,6 +117,10 @@ void Mapper::take(const LoopAnswer& answer) {
   if (!s.may_change) return;
   for (const LoopConstraint& loop : answer.loops) s.wanted.loops.push_back(loop.asPoseConstraint());
   s.take(answer);
+}
+
+bool Mapper::isLookedFor() const {
+  return state_->state() == TrackingState::lost || !state_->isPlaceKnown();
 }
 
 void Mapper::introduceCloser() {

@@ -68,7 +68,8 @@ struct Mapper::State {
   BackEnd back_end;
   std::optional<LoopQuestion> question;
   bool keyframes_moved = false;     ///< since the last question
-  std::vector<KeyframeView> views;  ///< of the keyframes
+  std::vector<KeyframeView> views;  ///< of the keyframes in use
+  std::vector<int> retired;         ///< keyframes, since the last question
   bool closer_is_old = false;       ///< does not know yet of the map that was loaded
   bool may_change = true;           ///< the map
   std::vector<MapPose> rooms;       ///< of a loaded map until it is found: where to look
@@ -132,6 +133,7 @@ struct Mapper::State {
   void finishCorrection(CorrectedMap& corrected);
   void finishDepth(DepthImprovement& depth, const std::vector<std::uint32_t>& changed);
   void settle();
+  void retireViews(const std::vector<int>& ids);
   void retrack(const PoseConstraint& step, int version);
   void follow(const std::vector<Deformation>& deformations,
               const std::vector<std::uint32_t>& blocks, bool lays_layers);

@@ -48,8 +48,10 @@ void printInfo(const std::string& file) {
                 formatStamp(content.frames.back().stamp_ns).c_str());
   }
   std::printf("surfels      %zu in %zu blocks\n", counts.surfels, counts.blocks);
-  std::printf("keyframes    %zu in %zu fragments, %zu with images\n", content.keyframes.size(),
-              fragmentsOf(content), counts.images);
+  const auto retired = std::count_if(content.keyframes.begin(), content.keyframes.end(),
+                                     [](const Keyframe& k) { return k.isRetired(); });
+  std::printf("keyframes    %zu in %zu fragments, %td retired, %zu with images\n",
+              content.keyframes.size(), fragmentsOf(content), retired, counts.images);
   std::printf("constraints  %zu, of them %td loops\n", content.constraints.size(), loops);
   std::printf("corrections  %d\n", content.graph_version);
   printCalibration(content, file);

@@ -16,6 +16,7 @@ struct GraphConfig {
   double robust_scale = 3.0;
   double max_chi_square = 22.46;
   int max_iterations = 50;
+  int keyframes_at_a_place = 4;
 };
 
 inline void visitFields(GraphConfig& c, FieldVisitor& v) {
@@ -34,6 +35,9 @@ inline void visitFields(GraphConfig& c, FieldVisitor& v) {
            "largest squared error, in variances, of a constraint after optimising; above it a loop "
            "is refused (22.46: 99.9 % of true ones pass)");
   v.integer("max_iterations", c.max_iterations, 1, 10000, "Levenberg-Marquardt steps");
+  v.integer("keyframes_at_a_place", c.keyframes_at_a_place, 0, 100000,
+            "of more keyframes than this that see about the same, the later are retired after some "
+            "time: their pictures go, what hangs on them follows an older one; 0: none is");
 }
 
 }  // namespace pf

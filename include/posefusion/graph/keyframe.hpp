@@ -16,6 +16,11 @@ struct Keyframe {
   std::int64_t stamp_ns = 0;
   std::int32_t map_frame = 0;  ///< number of the fused frame, as in SurfelArrays::created
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  /// Retired: it and what hangs on it move rigidly with this keyframe, and no constraint ends here;
+  /// -1: in use.
+  int follows = -1;
+
+  bool isRetired() const { return follows >= 0; }
 };
 
 /// The pose of any frame, kept relative to a keyframe, so that it follows corrections.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -100,6 +101,13 @@ class PoseGraph {
   /// loops lead past the step.
   GraphResult retrack(const PoseConstraint& step);
 
+  /// Bounds the graph of a camera that walks the same rounds for hours: a keyframe (not of the
+  /// latest) with config().keyframes_at_a_place others as near as two frames of which one becomes
+  /// none is retired. It then follows the older one of them that it is best tied to, which its
+  /// constraints are handed on to; no pose changes. After Johannsson et al., "Temporally scalable
+  /// visual SLAM using a reduced pose graph", ICRA 2013. Returns those retired now, ascending.
+  std::vector<int> retire();
+
   /// Counts a correction that moves no keyframe.
   void countCorrection() { ++version_; }
 
@@ -139,6 +147,11 @@ class PoseGraph {
   std::string objection(const std::vector<GraphResult::Error>& errors, std::size_t new_loops) const;
   GraphResult prove(const std::vector<Keyframe>& start, std::vector<PoseConstraint> loops);
   void doubt(const PoseConstraint& loop);
+  const PoseConstraint* bestTie(int keyframe) const;
+  void retire(int keyframe, const PoseConstraint& tie);
+  /// The same between keyframes in use; nothing where both ends are then one.
+  std::optional<PoseConstraint> inUse(PoseConstraint constraint) const;
+  void moveRetired(const std::vector<Keyframe>& before, std::vector<Keyframe>& after) const;
   /// The poses where those of these constraints that count fit best, by graduated non-convexity,
   /// with those of the others that fit there too; empty: the solver failed.
   std::vector<Eigen::Isometry3d> graduallySolved(const std::vector<PoseConstraint>& all,

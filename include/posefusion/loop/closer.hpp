@@ -57,6 +57,9 @@ class LoopCloser {
   /// Ids rise. Ferns are stored by their rules, the view in any case.
   void addKeyframe(const KeyframeView& view);
 
+  /// No loop leads to these keyframes any more, ascending; unknown ones count for nothing.
+  void forget(const std::vector<int>& ids);
+
   /// New poses after a correction: of keyframe i at place i. Throws InputError when there are fewer
   /// than the last id wants.
   void setPoses(const std::vector<MapPose>& poses);

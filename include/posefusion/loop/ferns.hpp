@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -66,6 +67,9 @@ class FernDatabase {
   /// Stores a keyframe when it is unlike all others (at least a tenth of its ferns must say
   /// something). Tells whether it did.
   bool harvest(std::int64_t id, const FernCode& code);
+
+  /// Drops stored keyframes.
+  void forget(const std::function<bool(std::int64_t id)>& is_forgotten);
 
   std::size_t size() const { return ids_.size(); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -34,10 +35,16 @@ struct LoopQuestion {
   /// The keyframes of a map just loaded, as far as their images are known: what was before is
   /// forgotten.
   std::optional<std::vector<KeyframeView>> known;
+  /// Keyframes that others stand for: their pictures are forgotten.
+  std::vector<int> retired{};
   /// Of all keyframes before this one, in their order, when a correction has moved them; else
   /// empty.
   std::vector<MapPose> corrected;
   std::shared_ptr<const PlaceQuestion> place;
+  /// Set, by another thread, once nobody wants to know the place any more; nullptr: always wanted.
+  std::shared_ptr<const std::atomic<bool>> place_is_void{};
+  /// Of the keyframe; else it is only told.
+  bool seeks_loops = true;
   /// How often the depth of the keyframes has been corrected by what was learned.
   int depth_version = 0;
   /// That the depth of the keyframes is corrected by; none: it is as measured.
@@ -52,7 +59,8 @@ struct LoopQuestion {
 
   /// Whether there is anything beside the lost camera.
   bool tellsMore() const {
-    return keyframe || step || known || !corrected.empty() || !remeasured.empty() || calibrates;
+    return keyframe || step || known || !retired.empty() || !corrected.empty() ||
+           !remeasured.empty() || calibrates;
   }
 };
 

@@ -50,6 +50,7 @@ struct CorrectedMap {
   SurfelMap before, map;                  ///< see SurfelMap::takeUp()
   std::optional<DepthImprovement> depth;  ///< its views have been corrected
   std::vector<std::uint32_t> swept;       ///< blocks in which no layers are left
+  std::vector<int> retired;               ///< keyframes, see PoseGraph::retire()
   bool lays_layers = false;  ///< what was moved may lie double now; where it rested it does not
 };
 

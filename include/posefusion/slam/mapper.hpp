@@ -48,6 +48,10 @@ class Mapper {
   /// where a lost camera is.
   std::optional<LoopQuestion> takeQuestion();
 
+  /// Whether it helps to know where the camera is: it is lost, or in a fragment whose place is not
+  /// known.
+  bool isLookedFor() const;
+
   /// Somebody else answers from now on: the next question tells of all keyframes.
   void introduceCloser();
 
