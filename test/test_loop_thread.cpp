@@ -243,6 +243,40 @@ TEST_F(LoopExchanges, ALostCamerasAnswerIsTakenBeforeThoseThatWait) {
   EXPECT_EQ(closer->taken, (std::vector<std::uint64_t>{place, 1, 2, 3}));
 }
 
+TEST_F(LoopExchanges, WhereTheCloserIsBehindNeighboursAreToldButNotCompared) {
+  int next = 0;
+  for (; next < kMapped && closer->questions.size() < 8; ++next) see(next);
+  ASSERT_EQ(closer->questions.size(), 8U) << "the test needs keyframes";
+  EXPECT_EQ(exchange->waiting(), 8U);
+  EXPECT_GT(exchange->oldestWaitsS(), 0.0);
+  const auto seeks = [&](std::size_t i) { return closer->questions[i].seeks_loops; };
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE(seeks(i)) << i;
+  EXPECT_FALSE(seeks(6));
+  EXPECT_FALSE(seeks(7));
+  closer->ready = {1, 2};
+  for (; next < kMapped && closer->questions.size() < 9; ++next) see(next);
+  ASSERT_EQ(closer->questions.size(), 9U) << "the test needs keyframes";
+  EXPECT_TRUE(seeks(8)) << "two were answered";
+}
+
+TEST_F(LoopExchanges, APlaceThatNobodyWantsAnyMoreIsNotLookedFor) {
+  for (int i = 0; i < 10; ++i) see(i);
+  for (int i = 0; i < kCovered; ++i) see(10, true);
+  for (int i = 0; i < 20 && !closer->questions.back().place; ++i) see(9);
+  const LoopQuestion question = closer->questions.back();
+  ASSERT_NE(question.place, nullptr);
+  EXPECT_FALSE(*question.place_is_void);
+  LoopWorker worker(config.loop, config.tracking, depthSensorOf(config));
+  for (int i = 0; i < 40 && mapper->isLookedFor(); ++i) see(9);
+  ASSERT_FALSE(mapper->isLookedFor()) << "back by itself";
+  see(9);
+  EXPECT_TRUE(*question.place_is_void);
+  const LoopAnswer answer = worker.answer(question);
+  EXPECT_TRUE(answer.asked_for_place);
+  EXPECT_FALSE(answer.place);
+  EXPECT_EQ(answer.counts.searched, 0U);
+}
+
 /// Offline, where answers depend on the order of the questions, nothing is urgent.
 class LaggingExchange : public LoopExchanges {
  protected:

@@ -34,6 +34,9 @@ void noteMap(const pf::FrameStatus& status, const MappingSession& session, Stage
   count("keyframes", mapper.backEnd().graph().keyframes().size());
   count("loops closed", mapper.backEnd().counts().accepted);
   count("loops refused", mapper.backEnd().counts().refused + loops.allRefused());
+  count("loop questions waiting", session.loops().waiting());
+  watch.set("oldest of them waits (s)",
+            secondsText(static_cast<std::int64_t>(1e9 * session.loops().oldestWaitsS())));
   count("places searched", loops.searched);
   count("places found", loops.found);
 }

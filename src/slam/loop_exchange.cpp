@@ -10,9 +10,22 @@
 #include "posefusion/slam/mapper.hpp"
 
 namespace pf {
+namespace {
+
+// Of keyframes that wait so many times to be compared with others, live: with a fifth of a second
+// for each, the next would be answered more than a second late. Its neighbours see the same.
+constexpr std::ptrdiff_t kMostSeeking = 6;
+
+}  // namespace
 
 void LoopExchange::serve(Mapper& mapper) {
   if (responder_->isReplaced()) mapper.introduceCloser();
+  // What an offline run counts must not depend on when this is seen.
+  if (time_ == AnswerTime::when_ready && !mapper.isLookedFor()) {
+    for (const Asked& asked : asked_) {
+      if (asked.isForPlace()) *asked.is_void = true;
+    }
+  }
   if (auto question = mapper.takeQuestion()) {
     if (time_ == AnswerTime::when_ready) {
       askInParts(std::move(*question));
@@ -73,8 +86,22 @@ void LoopExchange::reset() {
 }
 
 void LoopExchange::ask(LoopQuestion question) {
-  const bool for_place = question.place != nullptr;
-  asked_.push_back({frame_, responder_->ask(std::move(question)), for_place});
+  Asked asked;
+  asked.at = frame_;
+  asked.seeks_loops = question.keyframe && question.seeks_loops;
+  asked.when = std::chrono::steady_clock::now();
+  if (question.place) {
+    asked.is_void = std::make_shared<std::atomic<bool>>(false);
+    question.place_is_void = asked.is_void;
+  }
+  asked.number = responder_->ask(std::move(question));
+  asked_.push_back(std::move(asked));
+}
+
+double LoopExchange::oldestWaitsS() const {
+  if (asked_.empty()) return 0;
+  const auto since = std::chrono::steady_clock::now() - asked_.front().when;
+  return std::chrono::duration<double>(since).count();
 }
 
 /// Where a lost camera is does not wait for what else there is to be told or asked.
@@ -84,6 +111,9 @@ void LoopExchange::askInParts(LoopQuestion question) {
   place.depth_version = question.depth_version;
   place.place = std::exchange(question.place, nullptr);
   place.is_urgent = true;
+  const auto seeking =
+      std::count_if(asked_.begin(), asked_.end(), [](const Asked& a) { return a.seeks_loops; });
+  question.seeks_loops = seeking < kMostSeeking;
   // Asked first: an idle closer has taken it in before it looks for the place.
   if (question.tellsMore()) ask(std::move(question));
   if (place.place) ask(std::move(place));
@@ -98,9 +128,9 @@ std::deque<LoopExchange::Asked>::iterator LoopExchange::findDue(const Mapper& ma
   }
   // Urgent are those for a place; all others come in their order.
   const auto first =
-      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return !a.for_place; });
+      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return !a.isForPlace(); });
   const auto place =
-      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return a.for_place; });
+      std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return a.isForPlace(); });
   for (const auto one : {place, first}) {
     if (one != asked_.end() && responder_->isReady(one->number)) return one;
   }
@@ -112,7 +142,7 @@ void LoopExchange::take(std::deque<Asked>::iterator which, Mapper& mapper) {
   asked_.erase(which);
   // Where there is no answer the mapper is told that nothing was found, so that it asks again.
   LoopAnswer nothing;
-  nothing.asked_for_place = asked.for_place;
+  nothing.asked_for_place = asked.isForPlace();
   std::optional<LoopAnswer> answer;
   Stopwatch watch;
   try {

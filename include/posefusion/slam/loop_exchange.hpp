@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -75,11 +77,22 @@ class LoopExchange {
   /// Questions that were given up.
   std::size_t unanswered() const { return unanswered_; }
 
+  /// Questions that wait for their answers.
+  std::size_t waiting() const { return asked_.size(); }
+
+  /// Since when the oldest of them waits (s); 0: none does.
+  double oldestWaitsS() const;
+
  private:
   struct Asked {
     std::int64_t at = 0;       ///< number of the frame
     std::uint64_t number = 0;  ///< of the question
-    bool for_place = false;
+    bool seeks_loops = false;
+    /// Of a question for a place: see LoopQuestion::place_is_void.
+    std::shared_ptr<std::atomic<bool>> is_void;
+    std::chrono::steady_clock::time_point when{};
+
+    bool isForPlace() const { return is_void != nullptr; }
   };
 
   void ask(LoopQuestion question);
