@@ -95,5 +95,34 @@ TEST(CovarianceCheck, LongGapsAndMissingTruthAreLeftOut) {
   EXPECT_EQ(checkCovariances(w.truth, w.poses).motions, static_cast<std::size_t>(kLength - 102));
 }
 
+/// Provisional poses that are off by 0.1 m, in a map that lies anywhere in the truth.
+TEST(ProvisionalCheck, CountsThoseWithinTheirOwnSigmas) {
+  Trajectory truth, known;
+  std::vector<UncertainPose> provisional;
+  Vector6d anywhere;
+  anywhere << 3, -1, 2, 0.3, -0.5, 1;
+  const Eigen::Isometry3d T_map_truth = expSe3(anywhere);
+  for (int i = 0; i < 40; ++i) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() << 0.1 * i, std::sin(0.2 * i), 0.01 * i * i;
+    const std::int64_t stamp_ns = 33'000'000LL * (i + 1);
+    truth.push_back({stamp_ns, T});
+    if (i < 20) {
+      known.push_back({stamp_ns, T_map_truth * T});
+      continue;
+    }
+    Eigen::Isometry3d off = T_map_truth * T;
+    off.translation() += 0.1 * Eigen::Vector3d::UnitX();
+    const double sigma_m = i < 30 ? 0.05 : 0.02;
+    provisional.push_back({stamp_ns, off, independentCovariance(sigma_m, 0.01)});
+  }
+  const ProvisionalShare share = checkProvisional(truth, known, provisional);
+  EXPECT_EQ(share.poses, 20U);
+  EXPECT_NEAR(share.within, 0.5, 1e-9);
+  EXPECT_NEAR(share.median_m, 0.1, 1e-6);
+  EXPECT_NEAR(share.most_m, 0.1, 1e-6);
+  EXPECT_EQ(checkProvisional(truth, {}, provisional).poses, 0U) << "nothing tells where the map is";
+}
+
 }  // namespace
 }  // namespace pf

@@ -34,9 +34,14 @@ StatusRow trackedRow() {
 
 TEST(StatusFile, ReadsWhatItWrites) {
   TemporaryFolder folder;
-  saveStatus(folder / "s.csv", {lostRow(), trackedRow()});
+  StatusRow provisional = trackedRow();
+  provisional.has_pose = false;
+  provisional.is_provisional = true;
+  saveStatus(folder / "s.csv", {lostRow(), trackedRow(), provisional});
   const auto rows = loadStatus(folder / "s.csv");
-  ASSERT_EQ(rows.size(), 2U);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_TRUE(rows[2].is_provisional);
+  EXPECT_FALSE(rows[2].has_pose || rows[1].is_provisional);
   EXPECT_FALSE(rows[0].has_pose);
   EXPECT_EQ(rows[0].state, "lost");
   EXPECT_EQ(rows[0].outcome, "bad_input");

@@ -32,6 +32,7 @@ constexpr char kStatus[] = "status";
 constexpr char kStateText[] = "state_text";
 constexpr char kOdometry[] = "odometry";
 constexpr char kPose[] = "pose";
+constexpr char kProvisionalPose[] = "provisional_pose";
 constexpr char kPath[] = "path";
 constexpr char kSurfels[] = "surfels";
 // Fusion asks the loop closer, and its answer.

@@ -49,6 +49,11 @@ class PoseOutput {
   /// well.
   bool publish(const std_msgs::Header& image, const pf::FrameStatus& status, std::string& note);
 
+  /// Where the robot may be while the camera is not located, as a PoseWithCovarianceStamped; no
+  /// transform, which could not tell how unsure it is. Nothing before the first located frame, and
+  /// where a transform is wanting.
+  void publishProvisional(const std_msgs::Header& image, const pf::ProvisionalPose& pose);
+
   /// No pose is known: sends map -> odom as it was known last (see PoseOutputSettings), unless it
   /// was sent with this stamp, or a later one, already. The robot moves on by its odometry. Without
   /// odometry nothing is sent: it would be a pose, and a false one.
@@ -83,7 +88,7 @@ class PoseOutput {
   void extendPath(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& T_base_camera);
 
   PoseOutputSettings settings_;
-  ros::Publisher odometry_, pose_, path_publisher_;
+  ros::Publisher odometry_, pose_, provisional_, path_publisher_;
   std::unique_ptr<ListeningLookup> lookup_;        // only where a frame has to be looked up
   std::unique_ptr<ListeningParentWatch> parents_;  // only where transforms are sent
   bool sends_ = false;                             // the last transform was sent

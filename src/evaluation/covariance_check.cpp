@@ -70,4 +70,38 @@ CovarianceShare checkCovariances(const Trajectory& truth, const std::vector<Unce
   return share;
 }
 
+ProvisionalShare checkProvisional(const Trajectory& truth, const Trajectory& known,
+                                  const std::vector<UncertainPose>& provisional) {
+  Trajectory estimate;
+  for (const UncertainPose& pose : provisional) {
+    estimate.push_back({pose.stamp_ns, pose.T_map_camera});
+  }
+  const std::vector<PosePair> pairs = matchPoses(truth, estimate);
+  const auto places = matchPoses(truth, known);
+  ProvisionalShare share;
+  if (pairs.empty() || places.size() < 3) return share;
+  const Alignment to_truth = align(places, false);
+  std::vector<double> errors_m, sigmas_m;
+  std::size_t within = 0, at = 0;
+  for (const PosePair& pair : pairs) {
+    while (provisional[at].stamp_ns < pair.estimate.stamp_ns) ++at;
+    const Matrix6d& covariance = provisional[at].covariance;
+    const Vector6d error =
+        logSe3((to_truth * pair.estimate.T_world_camera).inverse() * pair.truth.T_world_camera);
+    bool is_within = true;
+    for (int axis = 0; axis < 6; ++axis) {
+      is_within = is_within && sigmasOf(error[axis], covariance(axis, axis)) <= 3.0;
+    }
+    within += is_within ? 1 : 0;
+    errors_m.push_back(error.head<3>().norm());
+    sigmas_m.push_back(std::sqrt(covariance.diagonal().head<3>().maxCoeff()));
+  }
+  share.poses = pairs.size();
+  share.within = static_cast<double>(within) / static_cast<double>(share.poses);
+  share.median_m = statisticsOf(errors_m).median;
+  share.most_m = *std::max_element(errors_m.begin(), errors_m.end());
+  share.median_sigma_m = statisticsOf(sigmas_m).median;
+  return share;
+}
+
 }  // namespace pf

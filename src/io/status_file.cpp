@@ -14,8 +14,9 @@ namespace pf {
 namespace {
 
 constexpr const char* kFirstNames =
-    "stamp,has_pose,state,outcome,reason,tx,ty,tz,qx,qy,qz,qw,s_x,s_y,s_z,s_rx,s_ry,s_rz";
-constexpr std::size_t kColumns = 5 + 7 + 6 + 21;
+    "stamp,has_pose,provisional,state,outcome,reason,tx,ty,tz,qx,qy,qz,qw,s_x,s_y,s_z,s_rx,s_ry,s_"
+    "rz";
+constexpr std::size_t kColumns = 6 + 7 + 6 + 21;
 
 std::string header() {
   std::string names = kFirstNames;
@@ -72,12 +73,13 @@ StatusRow parseRow(const std::string& line) {
   StatusRow row;
   row.stamp_ns = parseStamp(cells[0]);
   row.has_pose = cells[1] == "1";
-  row.state = cells[2];
-  row.outcome = cells[3];
-  row.reason = cells[4];
+  row.is_provisional = cells[2] == "1";
+  row.state = cells[3];
+  row.outcome = cells[4];
+  row.reason = cells[5];
   const auto number = [&](std::size_t column) { return numberOf(cells[column]); };
-  row.T_map_camera.translation() = Eigen::Vector3d(number(5), number(6), number(7));
-  const Eigen::Quaterniond q(number(11), number(8), number(9), number(10));
+  row.T_map_camera.translation() = Eigen::Vector3d(number(6), number(7), number(8));
+  const Eigen::Quaterniond q(number(12), number(9), number(10), number(11));
   if (std::abs(q.norm() - 1.0) > 0.05) throw InputError("the quaternion is not of unit length");
   row.T_map_camera.linear() = q.normalized().toRotationMatrix();
   std::size_t column = kColumns - 21;
@@ -88,8 +90,9 @@ StatusRow parseRow(const std::string& line) {
 }
 
 void writeRow(std::ostream& out, const StatusRow& row) {
-  out << formatStamp(row.stamp_ns) << ',' << (row.has_pose ? 1 : 0) << ',' << row.state << ','
-      << row.outcome << ',' << quoted(row.reason);
+  out << formatStamp(row.stamp_ns) << ',' << (row.has_pose ? 1 : 0) << ','
+      << (row.is_provisional ? 1 : 0) << ',' << row.state << ',' << row.outcome << ','
+      << quoted(row.reason);
   const Eigen::Vector3d t = row.T_map_camera.translation();
   const Eigen::Quaterniond q(row.T_map_camera.linear());
   for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) out << ',' << value;

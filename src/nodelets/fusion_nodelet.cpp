@@ -162,6 +162,7 @@ class FusionNodelet : public ChainNodelet {
     if (!unanswered.empty()) NODELET_WARN_THROTTLE(30.0, "%s", unanswered.c_str());
     std::string reason = reasonOf(status);
     if (status.located) publishPose(header, status, reason);
+    if (status.provisional) pose_output_->publishProvisional(header, *status.provisional);
     if (!reason.empty()) NODELET_WARN_THROTTLE(5.0, "%s", reason.c_str());
     if (session_->mapper().backEnd().graph().version() != version) {
       pose_output_->correct(session_->mapper().backEnd().trajectory());

@@ -2,6 +2,7 @@
 #include "posefusion_ros/pose_output.hpp"
 
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <tf2_eigen/tf2_eigen.h>
 
@@ -18,6 +19,17 @@ namespace {
 constexpr int kQueue = 10;
 // The path keeps ten poses a second: a whole day stays small enough to be sent.
 const ros::Duration kPathStep(0.1);
+
+/// `covariance`: of the twist in the camera frame.
+geometry_msgs::PoseWithCovariance withCovariance(const Eigen::Isometry3d& T_map_base,
+                                                 const Eigen::Isometry3d& T_base_camera,
+                                                 const pf::Matrix6d& covariance) {
+  geometry_msgs::PoseWithCovariance pose;
+  pose.pose = toPose(T_map_base);
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(pose.covariance.data()) =
+      poseCovariance(T_map_base, T_base_camera, covariance);
+  return pose;
+}
 
 }  // namespace
 
@@ -44,6 +56,8 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
     : settings_(settings),
       odometry_(handle.advertise<nav_msgs::Odometry>(topics::kOdometry, kQueue)),
       pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kQueue)),
+      provisional_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>(
+          topics::kProvisionalPose, kQueue)),
       path_publisher_(handle.advertise<nav_msgs::Path>(topics::kPath, 1, true)) {
   if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
     lookup_ = std::make_unique<ListeningLookup>(settings.lookup);
@@ -122,6 +136,20 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
   return true;
 }
 
+void PoseOutput::publishProvisional(const std_msgs::Header& image,
+                                    const pf::ProvisionalPose& pose) {
+  Links links;
+  std::string unused;
+  if (!T_map_start_ || !look(image, links, unused)) return;
+  const Eigen::Isometry3d T_map_base =
+      *T_map_start_ * pose.T_map_camera * links.T_base_camera.inverse();
+  geometry_msgs::PoseWithCovarianceStamped message;
+  message.header.stamp = image.stamp;
+  message.header.frame_id = settings_.map_frame;
+  message.pose = withCovariance(T_map_base, links.T_base_camera, pose.covariance);
+  provisional_.publish(message);
+}
+
 void PoseOutput::hold(const ros::Time& stamp) {
   if (!settings_.publish_tf || !settings_.tf_while_lost || !T_map_odom_ || stamp <= sent_) return;
   sendTransform(stamp, settings_.odom_frame, *T_map_odom_);
@@ -166,9 +194,7 @@ void PoseOutput::sendOdometry(const ros::Time& stamp, const Links& links,
   odometry.header.stamp = stamp;
   odometry.header.frame_id = settings_.map_frame;
   odometry.child_frame_id = links.base;
-  odometry.pose.pose = toPose(T_map_base);
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
-      poseCovariance(T_map_base, links.T_base_camera, covariance);
+  odometry.pose = withCovariance(T_map_base, links.T_base_camera, covariance);
   if (T_map_base_before_ && stamp > before_) {
     const pf::Vector6d twist =
         pf::logSe3(T_map_base_before_->inverse() * T_map_base) / (stamp - before_).toSec();

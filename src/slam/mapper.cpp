@@ -110,7 +110,9 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   Stopwatch watch;
   s.frame.pace = s.pace_meter.add(s.last_stamp_ns);
   s.frame.assign(input.frame, input.mask, s.config.frame, s.sensor);
+  const std::optional<MapPose> before = s.trackedPose();
   Location location = s.locate(input);
+  s.reckon(location, before, before_ns);
   s.countLostTime(location, before_ns);
   if (s.wantsFragment(input)) location = s.beginFragment();
   status.tracking_ms = watch.lapMs();
@@ -139,6 +141,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   status.T_map_camera = location.T_map_camera;
   status.tracking = location.tracking;
   status.covariance = location.covariance;
+  if (!status.located) status.provisional = s.reckoning.pose();
   status.motion = location.motion;
   status.surfels = s.map.size();
   status.map_full = s.map.refused() > 0;
@@ -214,6 +217,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.may_change = true;
   s.views.clear();
   s.retired.clear();
+  s.reckoning.reset();
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();

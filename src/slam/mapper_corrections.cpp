@@ -135,6 +135,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
                  [&](std::uint32_t block) { return map.blocks()[block].changed == map.frame(); });
     sortOut(unswept);
   }
+  if (isPlaceKnown()) reckoning.correct(T_new_old);
   localiser.move(T_new_old, where);
   moveView({where, T_new_old * view.T_map_camera});
   keyframes_moved = true;

@@ -22,6 +22,26 @@ bool Mapper::State::isViewOpen() const {
   return frame.valid_pixels >= kOpenView * static_cast<double>(frame.depth_m.total());
 }
 
+/// Where the last frame was tracked; nothing where it was not.
+std::optional<MapPose> Mapper::State::trackedPose() const {
+  if (localiser.state() != TrackingState::tracking) return std::nullopt;
+  return localiser.lastPose();
+}
+
+/// `before`: trackedPose() before the frame.
+void Mapper::State::reckon(const Location& location, const std::optional<MapPose>& before,
+                           std::int64_t before_ns) {
+  if (location.located && isPlaceKnown()) {
+    reckoning.know(location.T_map_camera, location.tracking.covariance);
+  } else if (location.located && before && before->fragment == location.fragment) {
+    reckoning.move(before->T_map_camera.inverse() * location.T_map_camera, location.covariance);
+  } else if (location.motion.found) {
+    reckoning.move(location.motion.T_before_after, location.motion.covariance);
+  } else if (before_ns != kBeforeAll) {
+    reckoning.pass(1e-9 * static_cast<double>(last_stamp_ns - before_ns));
+  }
+}
+
 /// `before_ns`: stamp of the frame before; kBeforeAll: there was none.
 void Mapper::State::countLostTime(const Location& location, std::int64_t before_ns) {
   if (location.state != TrackingState::lost) return lost_s.reset();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mapper_state.hpp"
@@ -11,6 +12,9 @@ namespace {
 // reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
 constexpr double kRoomSide_m = 1.0;
 constexpr std::size_t kRoomsAtOnce = 4;
+// Half of that reach, as the reckoned place is off itself; and twice of it, beyond which a search
+// hardly helps.
+constexpr double kCovered_m = 0.45, kMostUnsure_m = 1.8;
 
 }  // namespace
 
@@ -77,6 +81,20 @@ void Mapper::State::tellCloser() {
   }
 }
 
+/// Where the camera may be by dead reckoning, if that is beyond what is searched around the last
+/// pose, and near enough to the truth to be searched around.
+std::optional<MapPose> Mapper::State::reckonedPlace() const {
+  const auto reckoned = reckoning.pose();
+  if (!reckoned) return std::nullopt;
+  const MapPose& last = localiser.lastPose();
+  const Eigen::Vector3d way =
+      reckoned->T_map_camera.translation() - last.T_map_camera.translation();
+  const bool is_covered = last.fragment == kFirstFragment && way.norm() < kCovered_m;
+  const double sigma_m = std::sqrt(reckoned->covariance.diagonal().head<3>().maxCoeff());
+  if (is_covered || sigma_m > kMostUnsure_m) return std::nullopt;
+  return MapPose{kFirstFragment, reckoned->T_map_camera};
+}
+
 /// Lost: asks where this frame is, unless the answer for one before is still to come.
 void Mapper::State::askForPlace() {
   const double pixels = static_cast<double>(frame.depth_m.total());
@@ -87,6 +105,7 @@ void Mapper::State::askForPlace() {
   if (!map_at_loss) map_at_loss = searchedMap();
   tellCloser();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
+  if (const auto reckoned = reckonedPlace()) place.elsewhere.push_back(*reckoned);
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
   }
@@ -139,6 +158,7 @@ void Mapper::restartClock() {
 /// The camera is lost, and looked for everywhere in the map.
 void Mapper::State::seek(const MapPose& last, Brightness brightness) {
   rooms = spreadOut(back_end.keyframePoses());
+  reckoning.reset();
   map_at_loss.reset();
   place_is_stale = true;  // by what was asked before
   localiser.beginLost(last, brightness);

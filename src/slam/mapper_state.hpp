@@ -14,6 +14,7 @@
 #include "posefusion/map/surfel_map.hpp"
 #include "posefusion/slam/localiser.hpp"
 #include "posefusion/slam/mapper.hpp"
+#include "posefusion/slam/reckoning.hpp"
 
 namespace pf {
 
@@ -94,6 +95,7 @@ struct Mapper::State {
   int frames_to_sweep = 0;             ///< until layers are looked for, if there is nothing else
 
   // Of the search for a lost camera.
+  Reckoning reckoning;  ///< in the first fragment
   std::shared_ptr<const SurfelMap> map_at_loss;
   Eigen::Isometry3d T_reckoned_at_question = Eigen::Isometry3d::Identity();
   bool place_is_asked = false, place_is_stale = false;
@@ -121,7 +123,11 @@ struct Mapper::State {
   void tellCloser();
   void endSearch();
   void askForPlace();
+  std::optional<MapPose> reckonedPlace() const;
   std::shared_ptr<const SurfelMap> searchedMap() const;
+  std::optional<MapPose> trackedPose() const;
+  void reckon(const Location& location, const std::optional<MapPose>& before,
+              std::int64_t before_ns);
   void countLostTime(const Location& location, std::int64_t before_ns);
   bool isViewOpen() const;
   bool wantsFragment(const StaticFrame& input) const;

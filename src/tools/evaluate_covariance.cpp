@@ -21,6 +21,23 @@ nlohmann::ordered_json toJson(const NeesShare& nees) {
           {"inside", nees.inside},   {"too_low", nees.too_low}, {"too_high", nees.too_high}};
 }
 
+nlohmann::ordered_json toJson(const ProvisionalShare& share) {
+  return {{"poses", share.poses},
+          {"within_3_sigma", share.within},
+          {"median_m", share.median_m},
+          {"most_m", share.most_m},
+          {"median_sigma_m", share.median_sigma_m}};
+}
+
+void printProvisional(const ProvisionalShare& share) {
+  if (share.poses == 0) return;
+  std::printf("provisional poses                  %zu, %.1f %% within 3 sigma on all six axes\n",
+              share.poses, 100 * share.within);
+  std::printf(
+      "  error of their position          %.3f m median, %.3f m most; sigma %.3f m median\n",
+      share.median_m, share.most_m, share.median_sigma_m);
+}
+
 void printNees(const char* what, const NeesShare& nees) {
   std::printf("%-34s %.1f %% of %zu windows within %.2f..%.2f; %.1f %% below, %.1f %% above\n",
               what, 100 * nees.inside, nees.windows, nees.low, nees.high, 100 * nees.too_low,
@@ -30,13 +47,18 @@ void printNees(const char* what, const NeesShare& nees) {
 }  // namespace
 
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json) {
-  std::vector<UncertainPose> poses;
+  std::vector<UncertainPose> poses, provisional;
+  Trajectory known;
   for (const StatusRow& row : loadStatus(status)) {
-    if (row.outcome == "fused" || row.outcome == "located")
-      poses.push_back({row.stamp_ns, row.T_map_camera, row.covariance});
+    const UncertainPose pose{row.stamp_ns, row.T_map_camera, row.covariance};
+    const bool is_good = row.outcome == "fused" || row.outcome == "located";
+    if (row.is_provisional) provisional.push_back(pose);
+    if (is_good && !row.is_provisional) poses.push_back(pose);
+    if (row.has_pose) known.push_back({row.stamp_ns, row.T_map_camera});
   }
   const Trajectory true_poses = loadSequenceTruth(truth).trajectory;
   const CovarianceShare share = checkCovariances(true_poses, poses);
+  const ProvisionalShare unsure = checkProvisional(true_poses, known, provisional);
   const NeesShare one = neesOfMotions(true_poses, poses, kShort);
   const NeesShare five = neesOfMotions(true_poses, poses, kLong);
   if (json) {
@@ -46,7 +68,8 @@ void evaluateCovariance(const std::string& truth, const std::string& status, boo
                                         {"axes_within_3_sigma", share.axes},
                                         {"median_sigmas", share.median_sigmas},
                                         {"nees_1_s", toJson(one)},
-                                        {"nees_5_s", toJson(five)}};
+                                        {"nees_5_s", toJson(five)},
+                                        {"provisional", toJson(unsure)}};
     std::cout << out.dump(2) << "\n";
     return;
   }
@@ -64,6 +87,7 @@ void evaluateCovariance(const std::string& truth, const std::string& status, boo
   std::printf("  (1 expected)\n");
   printNees("  within its 95 % band", one);
   printNees("  mean of five within its band", five);
+  printProvisional(unsure);
   std::printf("  below: errors smaller than reported (too cautious); above: larger (too sure)\n");
 }
 

@@ -38,6 +38,11 @@ void StatusWriter::add(const ProcessedFrame& frame) {
   row.reason = reasonOf(status);
   row.T_map_camera = status.T_map_camera;
   if (isGood(status.outcome)) row.covariance = status.covariance;
+  row.is_provisional = status.provisional.has_value();
+  if (status.provisional) {
+    row.T_map_camera = status.provisional->T_map_camera;
+    row.covariance = status.provisional->covariance;
+  }
   rows_.push_back(std::move(row));
 }
 

@@ -35,4 +35,17 @@ struct CovarianceShare {
 /// an error of 0. All 0 of no motion.
 CovarianceShare checkCovariances(const Trajectory& truth, const std::vector<UncertainPose>& poses);
 
+/// How far provisional poses (Reckoning) are to be trusted: of those with a truth nearby, the share
+/// whose error is within 3 sigma on all six axes, and their errors.
+struct ProvisionalShare {
+  std::size_t poses = 0;
+  double within = 0;
+  double median_m = 0, most_m = 0;  ///< error of the position
+  double median_sigma_m = 0;        ///< reported: the largest of the three axes
+};
+
+/// `known`: poses that are not provisional, which tell how the map lies in the truth.
+ProvisionalShare checkProvisional(const Trajectory& truth, const Trajectory& known,
+                                  const std::vector<UncertainPose>& provisional);
+
 }  // namespace pf

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "posefusion/slam/reckoning.hpp"
 #include "posefusion/tracking/result.hpp"
 #include "posefusion/tracking/sparse_motion.hpp"
 
@@ -54,8 +56,10 @@ struct FrameStatus {
   TrackingResult tracking;
   Matrix6d covariance = Matrix6d::Zero();  ///< of the pose, as published: Location::covariance
   SparseMotion motion;                     ///< since the frame before
-  std::string detail;                      ///< the reason in words
-  bool is_other_camera = false;            ///< refused because it is not of the map's camera
+  /// Of a frame that is not located, by dead reckoning.
+  std::optional<ProvisionalPose> provisional;
+  std::string detail;            ///< the reason in words
+  bool is_other_camera = false;  ///< refused because it is not of the map's camera
   std::size_t surfels = 0;
   int map_version = 0;     ///< number of corrections so far
   bool map_full = false;   ///< the memory limit keeps new surfels out
