@@ -89,14 +89,18 @@ class Session:
             time.sleep(0.05)
 
 
+def rows_of(path):
+    """The rows of a list of the TUM benchmark."""
+    return [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
+
+
 def there_and_back(source, folder, frames, rate_hz, start_s=1.0):
     """A TUM folder with the images of another, forwards and backwards in turn."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in ("rgb", "depth", "camera.yaml"):
         (folder / name).symlink_to(source / name)
-    lines = [line.split() for line in (source / "associations.txt").read_text().splitlines()
-             if line and not line.startswith("#")]
+    lines = rows_of(source / "associations.txt")
     with open(folder / "associations.txt", "w", encoding="ascii") as out:
         for i in range(frames):
             at = i % (2 * len(lines) - 2)
