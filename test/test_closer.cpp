@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
@@ -239,6 +240,28 @@ TEST(LoopCloser, RefusesWhatDoesNotFollow) {
   closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true));
   EXPECT_THROW(closer.addKeyframe(keyframeView(frameOf(0), 3, {0, poseOf(0)}, true)), InputError);
   EXPECT_THROW(closer.setPoses({}), InputError);
+}
+
+TEST(LoopCloser, NoLoopLeadsToAForgottenKeyframe) {
+  const auto loopsWithout = [](const std::vector<int>& forgotten) {
+    LoopConfig config = quick();
+    config.fern_novelty = 0;
+    LoopCloser closer(config, {}, DepthSensor{});
+    for (int i = 0; i < kViews; ++i) {
+      closer.addKeyframe(keyframeView(frameOf(i), i, {0, poseOf(i)}, true));
+    }
+    const std::size_t ferns = closer.ferns().size();
+    closer.forget(forgotten);
+    EXPECT_EQ(closer.ferns().size(), ferns - forgotten.size());
+    closer.addKeyframe(keyframeView(frameOf(0), kViews, {0, poseOf(0)}, true));
+    std::set<std::int64_t> from;
+    for (const LoopConstraint& loop : closer.findLoops()) from.insert(loop.from);
+    return from;
+  };
+  ASSERT_EQ(loopsWithout({}).count(0), 1U);
+  const auto left = loopsWithout({0});
+  EXPECT_EQ(left.count(0), 0U);
+  EXPECT_FALSE(left.empty()) << "others see the same";
 }
 
 }  // namespace
