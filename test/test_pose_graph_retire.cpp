@@ -17,6 +17,12 @@ Eigen::Isometry3d onTheWay(int i) {
   return motion(0, 0, 0, angle) * motion(2 + beside, 0, 0, 0);
 }
 
+GraphConfig configOf(int keyframes_at_a_place) {
+  GraphConfig config;
+  config.keyframes_at_a_place = keyframes_at_a_place;
+  return config;
+}
+
 /// Rounds tracked with a drift, and closed by the pictures of each place.
 class Rounds {
  public:
@@ -58,12 +64,6 @@ class Rounds {
   }
 
  private:
-  static GraphConfig configOf(int keyframes_at_a_place) {
-    GraphConfig config;
-    config.keyframes_at_a_place = keyframes_at_a_place;
-    return config;
-  }
-
   PoseGraph graph_;
   Poses truth_;
 };
@@ -82,7 +82,7 @@ TEST(PoseGraphRetire, RoundsWithoutEndKeepTheGraphBounded) {
 TEST(PoseGraphRetire, NoPoseChangesAndNoConstraintIsMissedByMore) {
   Rounds rounds(0);
   rounds.walk(6);
-  PoseGraph graph(GraphConfig(), rounds.graph().keyframes(), rounds.graph().constraints(),
+  PoseGraph graph(configOf(4), rounds.graph().keyframes(), rounds.graph().constraints(),
                   rounds.graph().version());
   const PoseGraph before = graph;
   const auto retired = graph.retire();
@@ -126,7 +126,7 @@ TEST(PoseGraphRetire, NoPoseChangesAndNoConstraintIsMissedByMore) {
 TEST(PoseGraphRetire, TheLatestAndTheFirstStay) {
   Rounds rounds(0);
   rounds.walk(5);
-  PoseGraph graph(GraphConfig(), rounds.graph().keyframes(), rounds.graph().constraints(), 0);
+  PoseGraph graph(configOf(4), rounds.graph().keyframes(), rounds.graph().constraints(), 0);
   graph.retire();
   EXPECT_FALSE(graph.keyframes()[0].isRetired());
   for (std::size_t i = graph.keyframes().size() - 100; i < graph.keyframes().size(); ++i) {
@@ -196,7 +196,7 @@ TEST(PoseGraphRetire, LoopsToARetiredOneLeadToItsCarrier) {
 TEST(PoseGraphRetire, BesideMappingWhatCameMeanwhileIsTiedToTheCarrier) {
   Rounds rounds(0);
   rounds.walk(5);
-  PoseGraph graph(GraphConfig(), rounds.graph().keyframes(), rounds.graph().constraints(), 0);
+  PoseGraph graph(configOf(4), rounds.graph().keyframes(), rounds.graph().constraints(), 0);
   PoseGraph copy = graph.handOver();
   const auto retired = copy.retire();
   ASSERT_FALSE(retired.empty());

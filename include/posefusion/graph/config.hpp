@@ -16,7 +16,7 @@ struct GraphConfig {
   double robust_scale = 3.0;
   double max_chi_square = 22.46;
   int max_iterations = 50;
-  int keyframes_at_a_place = 4;
+  int keyframes_at_a_place = 8;
 };
 
 inline void visitFields(GraphConfig& c, FieldVisitor& v) {
