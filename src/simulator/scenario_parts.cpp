@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/scenario_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "simulator/room_furniture.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -86,6 +89,36 @@ HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
   h.eye = map.vector3("at_m", h.eye);
   h.target = map.vector3("look_at_m", h.target);
   h.reach_m = map.number("reach_m", h.reach_m, 0.0, 5.0);
+void readFurniture(YamlMap map, Furniture& furniture) {
+  furniture.style = map.word("style", furniture.style, furnitureStyles());
+  furniture.seed = static_cast<std::uint32_t>(
+      map.integer("seed", static_cast<int>(furniture.seed % 1000000001U), 0, 1000000000));
+  map.finish();
+}
+
+/// A room as new, or as the one that it is like, with its own name.
+RoomSpec readLike(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed) {
+  const auto find = [&](const std::string& name) {
+    return std::find_if(before.begin(), before.end(),
+                        [&](const RoomSpec& room) { return room.name == name; });
+  };
+  RoomSpec r;
+  r.furniture.seed = seed;
+  const std::string name = map.text("name", ""), like = map.text("like", "");
+  if (!name.empty() && find(name) != before.end()) {
+    map.fail("name", "is '" + name + "', as that of a room before");
+  }
+  if (!like.empty()) {
+    if (find(like) == before.end()) {
+      map.fail("like", "is '" + like + "', expected the name of a room before");
+    }
+    r = *find(like);
+  }
+  r.name = name;
+  r.like = like;
+  return r;
+}
+
   h.swing_rad = map.angle("swing_deg", h.swing_rad);
   h.period_s = map.number("period_s", h.period_s, 0.2, 100.0);
   h.shake = map.number("shake", h.shake, 0.0, 20.0);
@@ -94,8 +127,8 @@ HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
 
 }  // namespace
 
-RoomSpec readRoom(YamlMap& map) {
-  RoomSpec r;
+RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed) {
+  RoomSpec r = readLike(map, before, seed);
   r.origin_m = map.vector2("origin_m", r.origin_m);
   r.size_m = map.vector3("size_m", r.size_m);
   if (r.size_m.minCoeff() < 0.5) map.fail("size_m", "is too small, expected 0.5 m or more");
@@ -115,6 +148,8 @@ RoomSpec readRoom(YamlMap& map) {
     d.at_m = entry.number("at_m", 1.0, 0.0, 1000.0);
     d.width_m = entry.number("width_m", d.width_m, 0.3, 10.0);
     d.height_m = entry.number("height_m", d.height_m, 0.5, 10.0);
+  if (map.has("furniture")) readFurniture(map.map("furniture"), r.furniture);
+  if (map.has("doorways")) r.doorways.clear();
     entry.finish();
     r.doorways.push_back(d);
   }
