@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kCell_m = 0.1;
+constexpr double kBody_m = 0.13;  // that a body keeps from walls at the least
 
 bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
   const double c = std::cos(f.yaw), s = std::sin(f.yaw);
@@ -23,7 +24,8 @@ bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
 
 }  // namespace
 
-Walkway::Walkway(const World& world, double clearance_m) {
+Walkway::Walkway(const World& world, double clearance_m)
+    : rooms_(world.rooms), passages_(world.passages) {
   Eigen::AlignedBox3d box;
   for (const auto& room : world.rooms) box.extend(room);
   if (box.isEmpty()) return;
@@ -60,6 +62,16 @@ Vector2d Walkway::centreOf(int cell) const {
 bool Walkway::isFree(const Vector2d& p) const {
   const int cell = cellAt(p);
   return cell >= 0 && !free_.empty() && free_[static_cast<std::size_t>(cell)] != 0;
+}
+
+bool Walkway::isFloor(const Vector2d& p) const {
+  const auto has_room = [&](const auto& room) {
+    return (p - room.min().template head<2>()).minCoeff() > kBody_m &&
+           (room.max().template head<2>() - p).minCoeff() > kBody_m;
+  };
+  return std::any_of(rooms_.begin(), rooms_.end(), has_room) ||
+         std::any_of(passages_.begin(), passages_.end(),
+                     [&](const Footprint& passage) { return covers(passage, p, kBody_m); });
 }
 
 Vector2d Walkway::nearestFree(const Vector2d& p) const {

@@ -19,6 +19,10 @@ class Walkway {
 
   bool isFree(const Eigen::Vector2d& p) const;
 
+  /// Whether a body can be there, whatever stands on the floor: a little away from walls, or in a
+  /// doorway.
+  bool isFloor(const Eigen::Vector2d& p) const;
+
   /// The nearest free place.
   Eigen::Vector2d nearestFree(const Eigen::Vector2d& p) const;
 
@@ -41,3 +45,5 @@ class Walkway {
 };
 
 }  // namespace pf::simulator
+  std::vector<Eigen::AlignedBox3d> rooms_;
+  std::vector<Footprint> passages_;
