@@ -155,12 +155,24 @@ void Simulation::State::prepare(Shot& shot, const Moments& m) const {
     people[i].skinNormals(middle[i], surface.normals[i]);
     surface.places.push_back(crowd.at(i, m.color).at.cast<float>());
   }
-  const Vector3f eye = path->at(m.color).translation().cast<float>();
-  lighting.illuminate(surface, shot.in_color, eye, shot.light);
+  lighting.illuminate(surface, shot.in_color, viewConeOf(m), shot.light);
   shot.moments = m;
 }
 
 Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
+ViewCone Simulation::State::viewConeOf(const Moments& m) const {
+  const PinholeCamera& c = scenario.camera;
+  const Isometry3d T = path->at(m.color);
+  const double x = std::max(c.cx, c.width - c.cx) / c.fx,
+               y = std::max(c.cy, c.height - c.cy) / c.fy;
+  double angle = std::atan(std::hypot(x, y));
+  for (const double time : {m.first, m.last}) {
+    angle += Eigen::AngleAxisd(T.linear().transpose() * path->at(time).linear()).angle();
+  }
+  return {T.translation().cast<float>(), T.linear().col(2).cast<float>(),
+          static_cast<float>(angle)};
+}
+
   Shutter shutter;
   shutter.samples = samples;
   const double rolling = 1e-3 * scenario.color.rolling_shutter_ms;
