@@ -52,8 +52,14 @@ Action readAction(YamlMap& map) {
 
 Robot readRobot(YamlMap& map) {
   Robot r;
-  r.waypoints = map.points("waypoints");
+  for (const Vector3d& place : map.places("waypoints")) {
+    r.waypoints.emplace_back(place.x(), place.y());
+    if (!std::isnan(place.z())) r.waypoints.back().facing_rad = place.z() * M_PI / 180.0;
+  }
   if (r.waypoints.empty()) map.fail("waypoints", "is missing, expected [[x, y], ...]");
+  r.finds_way = map.flag("finds_way", r.finds_way);
+  r.stray_m = map.number("stray_m", r.stray_m, 0.0, 10.0);
+  if (r.stray_m > 0.0 && !r.finds_way) map.fail("stray_m", "needs finds_way: true");
   r.repeats = map.flag("repeats", r.repeats);
   r.turns_body = !map.has("look_at_m");
   r.target = map.vector3("look_at_m", r.target);
@@ -83,12 +89,6 @@ Robot readRobot(YamlMap& map) {
   return r;
 }
 
-HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
-  HandHeld h;
-  h.pattern = pattern;
-  h.eye = map.vector3("at_m", h.eye);
-  h.target = map.vector3("look_at_m", h.target);
-  h.reach_m = map.number("reach_m", h.reach_m, 0.0, 5.0);
 void readFurniture(YamlMap map, Furniture& furniture) {
   furniture.style = map.word("style", furniture.style, furnitureStyles());
   furniture.seed = static_cast<std::uint32_t>(
@@ -119,6 +119,12 @@ RoomSpec readLike(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32
   return r;
 }
 
+HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
+  HandHeld h;
+  h.pattern = pattern;
+  h.eye = map.vector3("at_m", h.eye);
+  h.target = map.vector3("look_at_m", h.target);
+  h.reach_m = map.number("reach_m", h.reach_m, 0.0, 5.0);
   h.swing_rad = map.angle("swing_deg", h.swing_rad);
   h.period_s = map.number("period_s", h.period_s, 0.2, 100.0);
   h.shake = map.number("shake", h.shake, 0.0, 20.0);
@@ -142,14 +148,14 @@ RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32
   r.lamps_y = static_cast<int>(lamps.y());
   if (lamps.minCoeff() < 0 || lamps.maxCoeff() > 10) map.fail("lamps", "expected 0 to 10 each way");
   r.lamp_radiance = map.number("lamp_radiance", r.lamp_radiance, 0.0, 1000.0);
+  if (map.has("furniture")) readFurniture(map.map("furniture"), r.furniture);
+  if (map.has("doorways")) r.doorways.clear();
   for (auto& entry : map.maps("doorways")) {
     Doorway d;
     d.wall = entry.word("wall", "south", {"south", "north", "west", "east"});
     d.at_m = entry.number("at_m", 1.0, 0.0, 1000.0);
     d.width_m = entry.number("width_m", d.width_m, 0.3, 10.0);
     d.height_m = entry.number("height_m", d.height_m, 0.5, 10.0);
-  if (map.has("furniture")) readFurniture(map.map("furniture"), r.furniture);
-  if (map.has("doorways")) r.doorways.clear();
     entry.finish();
     r.doorways.push_back(d);
   }
@@ -186,6 +192,7 @@ PersonSpec readPerson(YamlMap& map, std::uint32_t seed) {
   p.yaw_rad = map.angle("yaw_deg", 0.0);
   p.delay_s = map.number("delay_s", 0.0, 0.0, 36000.0);
   p.repeats = map.flag("repeats", true);
+  p.stray_m = map.number("stray_m", p.stray_m, 0.0, 10.0);
   for (auto& action : map.maps("script")) p.script.push_back(readAction(action));
   map.finish();
   return p;

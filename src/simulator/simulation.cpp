@@ -19,7 +19,7 @@ constexpr double kAfter_s = 0.05;  // of truth after the last frame: its depth i
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario) try : state_(std::make_unique<State>(scenario)) {
-  checkScene(scenario, state_->world);
+  checkScene(state_->scenario, state_->world);
   checkCamera(*state_->path, state_->world, state_->caster, scenario.start_s + scenario.duration_s);
 } catch (const InputError& error) {
   throw InputError(scenario.name + ": " + error.what());

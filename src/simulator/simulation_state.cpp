@@ -5,6 +5,7 @@
 
 #include "simulator/posture.hpp"
 #include "simulator/random.hpp"
+#include "simulator/settled.hpp"
 #include "simulator/simulation_state.hpp"
 #include "simulator/truth.hpp"
 
@@ -42,14 +43,14 @@ ViewSample viewAt(const Isometry3d& T_world_camera, double time) {
 }
 
 Simulation::State::State(const Scenario& s)
-    : scenario(s),
-      world(buildWorld(s)),
+    : world(buildWorld(s)),
+      scenario(settled(s, world)),
       people(buildPeople(s)),
       caster(world.mesh),
       lighting(world, caster),
-      path(buildPath(s)),
+      path(buildPath(scenario)),
       crowd(
-          s.people, Walkway(world, kWalkClearance_m),
+          scenario.people, Walkway(world, kWalkClearance_m),
           [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
           s.start_s + s.duration_s + 1.0),
       renderer(world, caster),
@@ -159,7 +160,6 @@ void Simulation::State::prepare(Shot& shot, const Moments& m) const {
   shot.moments = m;
 }
 
-Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
 ViewCone Simulation::State::viewConeOf(const Moments& m) const {
   const PinholeCamera& c = scenario.camera;
   const Isometry3d T = path->at(m.color);
@@ -173,6 +173,7 @@ ViewCone Simulation::State::viewConeOf(const Moments& m) const {
           static_cast<float>(angle)};
 }
 
+Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {
   Shutter shutter;
   shutter.samples = samples;
   const double rolling = 1e-3 * scenario.color.rolling_shutter_ms;

@@ -60,8 +60,8 @@ struct Simulation::State {
   void draw(const Shot& shot, SimulatedFrame& out);
   void observePeople(const Moments& m, SimulatedFrame& out) const;
 
-  Scenario scenario;
   World world;
+  Scenario scenario;  // settled in that world
   std::vector<Avatar> people;
   RayCaster caster;
   Lighting lighting;

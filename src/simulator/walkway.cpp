@@ -94,6 +94,37 @@ bool Walkway::seesFree(const Vector2d& a, const Vector2d& b) const {
   return true;
 }
 
+std::vector<int> Walkway::freeAround(int cell) const {
+  std::vector<int> cells;
+  for (int dr = -1; dr <= 1; ++dr) {
+    for (int dc = -1; dc <= 1; ++dc) {
+      const int col = cell % columns_ + dc, row = cell / columns_ + dr;
+      if (col < 0 || row < 0 || col >= columns_ || row >= rows_) continue;
+      const int next = row * columns_ + col;
+      if (free_[static_cast<std::size_t>(next)] != 0) cells.push_back(next);
+    }
+  }
+  return cells;
+}
+
+void Walkway::keepReachable(const Vector2d& from) {
+  const int start = cellAt(nearestFree(from));
+  if (start < 0) return;
+  std::vector<char> reached(free_.size(), 0);
+  std::vector<int> open{start};
+  reached[static_cast<std::size_t>(start)] = 1;
+  while (!open.empty()) {
+    const int cell = open.back();
+    open.pop_back();
+    for (const int next : freeAround(cell)) {
+      if (reached[static_cast<std::size_t>(next)] != 0) continue;
+      reached[static_cast<std::size_t>(next)] = 1;
+      open.push_back(next);
+    }
+  }
+  free_ = std::move(reached);
+}
+
 std::vector<int> Walkway::search(int from, int to) const {
   // A* with the straight distance; ties by cell number, so the way is always the same.
   std::vector<double> cost(free_.size(), std::numeric_limits<double>::infinity());
@@ -106,18 +137,13 @@ std::vector<int> Walkway::search(int from, int to) const {
     const int cell = open.top().second;
     open.pop();
     if (cell == to) break;
-    for (int dr = -1; dr <= 1; ++dr) {
-      for (int dc = -1; dc <= 1; ++dc) {
-        const int col = cell % columns_ + dc, row = cell / columns_ + dr;
-        if (col < 0 || row < 0 || col >= columns_ || row >= rows_) continue;
-        const int next = row * columns_ + col;
-        if (free_[static_cast<std::size_t>(next)] == 0) continue;
-        const double g = cost[static_cast<std::size_t>(cell)] + std::hypot(dr, dc);
-        if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
-        cost[static_cast<std::size_t>(next)] = g;
-        parent[static_cast<std::size_t>(next)] = cell;
-        open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCell_m, next);
-      }
+    for (const int next : freeAround(cell)) {
+      const double dr = next / columns_ - cell / columns_, dc = next % columns_ - cell % columns_;
+      const double g = cost[static_cast<std::size_t>(cell)] + std::hypot(dr, dc);
+      if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
+      cost[static_cast<std::size_t>(next)] = g;
+      parent[static_cast<std::size_t>(next)] = cell;
+      open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCell_m, next);
     }
   }
   std::vector<int> cells;
