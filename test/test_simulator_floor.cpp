@@ -186,7 +186,7 @@ rooms:
   - {name: one, size_m: [3.6, 3.6, 2.5], lamps: [1, 1], furniture: {style: lounge},
      doorways: [{wall: east, at_m: 0.7}]}
   - {name: two, like: one, origin_m: [3.72, 0], doorways: [{wall: west, at_m: 0.7}]}
-people: [{name: anna, start_m: [5.5, 0.7], stray_m: 0.2, script: [{do: walk, to: [0.8, 0.7]}]}]
+people: [{name: anna, start_m: [5.5, 0.7], stray_m: 0.2, script: [{do: walk, to: [2.6, 0.7]}]}]
 camera:
   motion: robot
   width: 80

@@ -13,16 +13,26 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kNear_m = 1.0;  // that a goal is moved at most to free floor
+
 /// Goals of one person or robot, moved.
 class Stray {
  public:
   Stray(const Walkway& walkway, double reach_m, std::uint32_t seed)
       : walkway_(walkway), reach_m_(reach_m), dice_(seed) {}
 
-  Vector2d operator()(const Vector2d& goal) {
+  /// One that is `exact` goes only as far as it has to. Throws InputError naming `key` where
+  /// nothing free is near.
+  Vector2d operator()(const Vector2d& goal, const std::string& key, bool exact = false) {
     const double angle = dice_.between(0.0, 2.0 * M_PI);
-    const double radius = reach_m_ * std::sqrt(dice_.between(0.0, 1.0));
-    return walkway_.nearestFree(goal + radius * Vector2d(std::cos(angle), std::sin(angle)));
+    const double part = std::sqrt(dice_.between(0.0, 1.0));
+    const double radius = exact ? 0.0 : reach_m_ * part;
+    const Vector2d wanted = goal + radius * Vector2d(std::cos(angle), std::sin(angle));
+    const Vector2d place = walkway_.nearestFree(wanted);
+    if ((place - wanted).norm() <= kNear_m) return place;
+    char text[64];
+    std::snprintf(text, sizeof text, " is (%.2f, %.2f), no way leads there", goal.x(), goal.y());
+    throw InputError(key + text);
   }
 
  private:
@@ -31,16 +41,21 @@ class Stray {
   Dice dice_;
 };
 
-void settlePerson(PersonSpec& person, const Walkway& walkway, std::uint32_t seed) {
+std::string entryOf(const char* list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+void settlePerson(PersonSpec& person, const std::string& key, Stray stray) {
   if (person.stray_m <= 0.0) return;
-  Stray stray(walkway, person.stray_m, seed);
-  person.start_m = stray(person.start_m);
-  for (Action& action : person.script) {
-    if (action.kind == Action::Kind::walk) action.at_m.head<2>() = stray(action.at_m.head<2>());
+  person.start_m = stray(person.start_m, key + ".start_m");
+  for (std::size_t i = 0; i < person.script.size(); ++i) {
+    Action& action = person.script[i];
+    if (action.kind != Action::Kind::walk) continue;
+    action.at_m.head<2>() = stray(action.at_m.head<2>(), key + "." + entryOf("script", i) + ".to");
   }
 }
 
-/// The corners of the way from one place to a waypoint, without that place.
+/// The corners of the way from one place to a waypoint, without both ends.
 void appendWay(const Vector2d& from, const Waypoint& to, const Walkway& walkway,
                std::vector<Waypoint>& route) {
   const auto way = walkway.findWay(from, to.at);
@@ -53,18 +68,8 @@ void settleRobot(Robot& robot, const Walkway& walkway, std::uint32_t seed) {
   std::vector<Waypoint> route;
   for (std::size_t i = 0; i < robot.waypoints.size(); ++i) {
     Waypoint goal = robot.waypoints[i];
-    const Vector2d moved = stray(goal.at);
-    if (!goal.facing_rad) goal.at = moved;
-    if (i > 0) {
-      if (!walkway.connects(route.back().at, goal.at)) {
-        char text[96];
-        std::snprintf(text, sizeof text,
-                      "camera.waypoints[%zu] is (%.2f, %.2f), no way leads there", i, goal.at.x(),
-                      goal.at.y());
-        throw InputError(text);
-      }
-      appendWay(route.back().at, goal, walkway, route);
-    }
+    goal.at = stray(goal.at, "camera." + entryOf("waypoints", i), goal.facing_rad.has_value());
+    if (i > 0) appendWay(route.back().at, goal, walkway, route);
     route.push_back(goal);
   }
   if (robot.repeats) appendWay(route.back().at, route.front(), walkway, route);
@@ -77,7 +82,8 @@ Scenario settled(Scenario s, const World& world) {
   Walkway walkway(world, kWalkClearance_m);
   if (s.robot && s.robot->finds_way) walkway.keepReachable(s.robot->waypoints.front().at);
   for (std::size_t i = 0; i < s.people.size(); ++i) {
-    settlePerson(s.people[i], walkway, hash(s.seed, 64U, static_cast<std::uint32_t>(i)));
+    const std::uint32_t seed = hash(s.seed, 64U, static_cast<std::uint32_t>(i));
+    settlePerson(s.people[i], entryOf("people", i), {walkway, s.people[i].stray_m, seed});
   }
   if (s.robot) settleRobot(*s.robot, walkway, hash(s.seed, 65U));
   return s;
