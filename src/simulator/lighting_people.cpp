@@ -15,6 +15,7 @@ using Eigen::Vector3f;
 constexpr std::size_t kPacket = 16;
 constexpr int kShadowRays = 4;
 constexpr float kShadowReach_m = 1.6F;
+constexpr float kCells_m = 0.3F;      // over which the light of a vertex fades away
 constexpr float kFaint = 0.025F;      // light of a lamp that is not worth its rays
 constexpr float kLimbs_m = 0.2F;      // that a body or the camera moves during an exposure
 constexpr float kSeenReach_m = 9.0F;  // shadows further away are not worth their rays
@@ -44,8 +45,16 @@ void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& peopl
                           const ViewCone& view, FrameLight& light) const {
   const Vector3f& eye = view.eye;
   auto places = surface.places;
-  const auto is_far = [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReach_m; };
-  places.erase(std::remove_if(places.begin(), places.end(), is_far), places.end());
+  float ceiling = 0.0F;
+  for (const auto& room : world_.rooms)
+    ceiling = std::max(ceiling, static_cast<float>(room.max().z()));
+  const auto is_unseen = [&](const Eigen::Vector2f& p) {
+    const float reach = kShadowReach_m + kCells_m;
+    const Vector3f low(p.x() - reach, p.y() - reach, 0.0F),
+        high(p.x() + reach, p.y() + reach, ceiling);
+    return (p - eye.head<2>()).norm() > kSeenReach_m || !view.sees({low, high});
+  };
+  places.erase(std::remove_if(places.begin(), places.end(), is_unseen), places.end());
   castShadows(places, people, light);
   light.people.resize(surface.positions.size());
   for (std::size_t person = 0; person < light.people.size(); ++person) {
