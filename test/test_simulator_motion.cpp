@@ -6,6 +6,7 @@
 
 #include "simulator/camera_path.hpp"
 #include "simulator/crowd.hpp"
+#include "simulator/lighting.hpp"
 #include "simulator/posture.hpp"
 #include "simulator_scene.hpp"
 
@@ -211,6 +212,62 @@ TEST(SimulatorMotion, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
   EXPECT_NEAR(after.translation().z(), spec.height_m, 0.05);
   EXPECT_GT((after.translation() - before.translation()).norm(), 0.5);
   EXPECT_GT(std::acos(before.linear().col(2).dot(after.linear().col(2))), 0.6);
+}
+
+TEST(SimulatorMotion, RobotsFaceElsewhereWhenTheyAreTold) {
+  Robot spec;
+  spec.waypoints = {{1, 1}, {Vector2d(5, 1), -M_PI_2}, {5, 3}};
+  spec.repeats = false;
+  const auto path = makeRobot(spec, 60.0, 3U);
+  int sideways = 0, ahead = 0;
+  for (double t = 0.0; t < 40.0; t += 0.1) {
+    const Eigen::Vector3d at = path->at(t).translation(), axis = path->at(t).linear().col(2);
+    if (at.x() > 1.3 && at.x() < 4.7) {
+      EXPECT_LT(axis.y(), -0.95) << t;
+      ++sideways;
+    }
+    ahead += at.y() > 1.3 && axis.y() > 0.9 ? 1 : 0;
+  }
+  EXPECT_GT(sideways, 50);
+  EXPECT_GT(ahead, 10);
+}
+
+TEST(SimulatorMotion, OnlyWhatCanBeReachedIsLeftFree) {
+  World world = emptyRoom(4, 4);
+  world.rooms.emplace_back(Eigen::Vector3d(4.12, 0, 0), Eigen::Vector3d(8, 4, 2.5));
+  Walkway walkway(world, 0.3);
+  EXPECT_TRUE(walkway.isFree({6, 2}));
+  walkway.keepReachable({1, 1});
+  EXPECT_TRUE(walkway.isFree({3, 3}));
+  EXPECT_FALSE(walkway.isFree({6, 2}));
+  EXPECT_LT(walkway.nearestFree({6, 2}).x(), 4.0);
+}
+
+TEST(SimulatorMotion, WhoIsPushedIntoAWallSlidesAlongIt) {
+  const World world = emptyRoom(3, 1.2);
+  const Walkway walkway(world, 0.3);
+  const auto camera = [](double t) { return Vector2d(1.5, 1.2 - 0.1 * t); };
+  const Crowd crowd({walker({1.5, 0.4}, {1.5, 0.4})}, walkway, camera, 10.0);
+  for (double t = 0.0; t < 9.0; t += 0.05) EXPECT_TRUE(walkway.isFloor(crowd.at(0, t).at)) << t;
+}
+
+TEST(SimulatorMotion, WhatHasAPixelIsInTheViewCone) {
+  const PinholeCamera camera;
+  const double corner = std::hypot(0.5 * camera.width, 0.5 * camera.height) / camera.fx;
+  const ViewCone cone{{1, 2, 1.4F}, {0, 0, 1}, static_cast<float>(std::atan(corner))};
+  const Vector3f half(0.3F, 0.3F, 0.9F);
+  for (int col = 0; col < camera.width; col += 40) {
+    for (int row = 0; row < camera.height; row += 40) {
+      for (const double z : {0.6, 2.0, 9.0}) {
+        const Vector3f seen = cone.eye + camera.unproject(col, row, z).cast<float>();
+        for (const Vector3f& off : {Vector3f(half), Vector3f(-half)}) {
+          EXPECT_TRUE(cone.sees({seen + off - half, seen + off + half}));
+        }
+      }
+    }
+  }
+  EXPECT_FALSE(cone.sees({Vector3f(1, 2, -4), Vector3f(2, 3, -2)}));
+  EXPECT_FALSE(cone.sees({Vector3f(6, 2, 1), Vector3f(7, 3, 3)}));
 }
 
 }  // namespace

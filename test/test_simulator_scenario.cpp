@@ -23,7 +23,7 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
   for (const char* name :
        {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere", "sitting_static",
         "sitting_xyz", "sitting_halfsphere", "loop_room", "hrpslam1", "hrpslam2", "fall_short",
-        "empty_room", "crowd", "empty_box", "box_walker"}) {
+        "empty_room", "crowd", "empty_box", "box_walker", "floor", "floor_light"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;

@@ -176,19 +176,19 @@ std::optional<Eigen::Vector3d> YamlMap::placeOf(const std::string& key) {
   return Eigen::Vector3d(v[0], v[1], v.size() == 3 ? v[2] : std::nan(""));
 }
 
-std::vector<Eigen::Vector2d> YamlMap::points(const std::string& key) {
+std::vector<Eigen::Vector3d> YamlMap::places(const std::string& key) {
   const YAML::Node node = get(key);
-  std::vector<Eigen::Vector2d> points;
-  if (!node) return points;
+  std::vector<Eigen::Vector3d> places;
+  if (!node) return places;
   try {
     for (const auto& v : node.as<std::vector<std::vector<double>>>()) {
-      if (v.size() != 2) throw YAML::Exception(YAML::Mark(), "");
-      points.emplace_back(v[0], v[1]);
+      if (v.size() < 2 || v.size() > 3) throw YAML::Exception(YAML::Mark(), "");
+      places.emplace_back(v[0], v[1], v.size() == 3 ? v[2] : std::nan(""));
     }
   } catch (const YAML::Exception&) {
-    fail(key, "is '" + shortText(node) + "', expected a list of [x, y]");
+    fail(key, "is '" + shortText(node) + "', expected a list of [x, y] or [x, y, z]");
   }
-  return points;
+  return places;
 }
 
 YamlMap YamlMap::map(const std::string& key) {

@@ -17,8 +17,11 @@ void approach(double& amount, double wanted, double seconds) {
   amount += std::clamp(wanted - amount, -step, step);
 }
 
-/// Steering away from places ahead: to the right of those in the way.
-double evade(const ActorState& state, const std::vector<Vector2d>& others, double& slow) {
+constexpr double kKeepsRight_s = 2.0;  // after a touch of a wall: two who meet there part
+
+/// Steering away from places ahead: to the right of those in the way, or always.
+double evade(const ActorState& state, const std::vector<Vector2d>& others, bool keeps_right,
+             double& slow) {
   double turn = 0.0;
   const Vector2d ahead = direction(state.yaw);
   for (const auto& other : others) {
@@ -28,7 +31,7 @@ double evade(const ActorState& state, const std::vector<Vector2d>& others, doubl
     const double cosine = d.dot(ahead) / distance;
     if (cosine < 0.3) continue;
     const double side = ahead.x() * d.y() - ahead.y() * d.x();  // > 0: on the left
-    turn += (side > -0.08 ? -1.0 : 1.0) * 1.1 * cosine * (1.5 - distance);
+    turn += (keeps_right || side > -0.08 ? -1.0 : 1.0) * 1.1 * cosine * (1.5 - distance);
     if (distance < 0.9) slow = std::min(slow, std::max(0.25, (distance - 0.45) / 0.45));
   }
   return turn;
@@ -63,15 +66,20 @@ Vector2d Actor::bodyPlace() const {
 
 void Actor::begin() {
   const Action& a = action();
+  planWay();
+  if (a.kind == Action::Kind::sit && state_.sit < 0.5) state_.seat_m = a.seat_m;
+  carry_wanted_ = a.carries ? 1.0 : 0.0;
+}
+
+void Actor::planWay() {
+  const Action& a = action();
   leg_ = 1;
   way_.clear();
   if (a.kind == Action::Kind::walk) way_ = walkway_->findWay(state_.at, a.at_m.head<2>());
   if (a.kind == Action::Kind::sit && state_.sit < 0.5) {
     const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehind_m * direction(a.yaw_rad);
     way_ = walkway_->findWay(state_.at, front);
-    state_.seat_m = a.seat_m;
   }
-  carry_wanted_ = a.carries ? 1.0 : 0.0;
 }
 
 bool Actor::turnTo(double yaw) {
@@ -90,7 +98,7 @@ bool Actor::walk(const Vector2d& goal, double speed, const std::vector<Vector2d>
     return state_.speed_m_s < 0.05;
   }
   double slow = 1.0;
-  const double evading = left > 0.5 ? evade(state_, others, slow) : 0.0;
+  const double evading = left > 0.5 ? evade(state_, others, keeps_right_s_ > 0.0, slow) : 0.0;
   const double wanted = std::atan2(d.y(), d.x()) + std::clamp(evading, -1.1, 1.1);
   const double error = std::remainder(wanted - state_.yaw, 2.0 * M_PI);
   const double rate = 2.6 * kActorStep_s;
@@ -148,7 +156,19 @@ void Actor::push(const Vector2d& by) {
   if (state_.sit > 0.0) return;
   const double step = 1.2 * kActorStep_s;
   const double length = by.norm();
+  const Vector2d before = state_.at;
   state_.at += by * std::min(1.0, step / std::max(length, 1e-9));
+  keepOffWalls(before);
+}
+
+/// Who steps into a wall slides along it, and looks for the way anew.
+void Actor::keepOffWalls(const Vector2d& before) {
+  if (walkway_->isFloor(state_.at) || !walkway_->isFloor(before)) return;
+  const Vector2d along_x(state_.at.x(), before.y()), along_y(before.x(), state_.at.y());
+  state_.at = walkway_->isFloor(along_x) ? along_x : walkway_->isFloor(along_y) ? along_y : before;
+  if (keeps_right_s_ > 0.0) return;
+  keeps_right_s_ = kKeepsRight_s;
+  planWay();
 }
 
 void Actor::settleHeight() {
@@ -166,6 +186,7 @@ void Actor::step(const std::vector<Vector2d>& others) {
   const Vector2d before = state_.at;
   state_.time_s += kActorStep_s;
   action_s_ += kActorStep_s;
+  keeps_right_s_ -= kActorStep_s;
   if (action_s_ >= 0.0 && !over_ && play(others)) {
     action_s_ = 0.0;
     const bool last = current_ + 1 == spec_.script.size();
@@ -173,6 +194,7 @@ void Actor::step(const std::vector<Vector2d>& others) {
     current_ = last ? (spec_.repeats ? 0 : current_) : current_ + 1;
     if (!over_) begin();
   }
+  keepOffWalls(before);
   approach(state_.sit, sit_wanted_, 1.5);
   approach(state_.crouch, crouch_wanted_, 1.1);
   approach(state_.talk, talk_wanted_, 0.6);

@@ -53,9 +53,11 @@ class Actor {
  private:
   const Action& action() const;
   void begin();
+  void planWay();
   bool play(const std::vector<Eigen::Vector2d>& others);  ///< true when the action is over
   bool walk(const Eigen::Vector2d& goal, double speed, const std::vector<Eigen::Vector2d>& others);
   bool turnTo(double yaw);
+  void keepOffWalls(const Eigen::Vector2d& before);
   bool playSit(const std::vector<Eigen::Vector2d>& others);
   void settleHeight();
 
@@ -66,6 +68,7 @@ class Actor {
   Stepper stepper_;
   std::size_t current_ = 0;
   double action_s_ = 0.0;
+  double keeps_right_s_ = 0.0;
   bool over_ = false;
   std::vector<Eigen::Vector2d> way_;
   std::size_t leg_ = 0;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,21 @@ struct Fall {
   double turn_rad = 0.8;  ///< and looks elsewhere by so much
 };
 
+/// Where a robot walks to, and where it faces on the way: there, unless it is said.
+struct Waypoint {
+  Waypoint(double x, double y) : at(x, y) {}
+  Waypoint(const Eigen::Vector2d& place, std::optional<double> facing)
+      : at(place), facing_rad(facing) {}
+
+  Eigen::Vector2d at;
+  std::optional<double> facing_rad;
+};
+
 /// A biped that walks along waypoints, with its falls.
 struct Robot {
-  std::vector<Eigen::Vector2d> waypoints;
+  std::vector<Waypoint> waypoints;
+  bool finds_way = false;  ///< round furniture and through doorways; otherwise it walks straight
+  double stray_m = 0.0;    ///< by the seed, from waypoints without a facing; see settled()
   bool repeats = true;     ///< starts again at the first waypoint
   bool turns_body = true;  ///< faces where it goes; otherwise looks at `target`
   Eigen::Vector3d target = Eigen::Vector3d::Zero();

@@ -35,8 +35,16 @@ struct Doorway {
   double height_m = 2.05;
 };
 
+/// How a room is furnished; see furnish(). Without a style it is empty.
+struct Furniture {
+  std::string style;
+  std::uint32_t seed = 0;
+};
+
 /// A room with its low corner on the floor.
 struct RoomSpec {
+  std::string name;  ///< may be empty
+  std::string like;  ///< name of the room that it was copied from
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
   Eigen::Vector3d size_m{6.0, 5.0, 2.7};
   std::string floor = "carpet";
@@ -45,6 +53,7 @@ struct RoomSpec {
   Eigen::Vector3d wall_color = Eigen::Vector3d::Ones();
   Eigen::Vector3d floor_color = Eigen::Vector3d::Ones();
   std::vector<Doorway> doorways;
+  Furniture furniture;
   int lamps_x = 2;
   int lamps_y = 2;
   double lamp_radiance = 9.0;

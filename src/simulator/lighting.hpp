@@ -27,6 +27,14 @@ struct FrameLight {
   std::vector<std::uint32_t> shaded;                 ///< vertices of the world near people
 };
 
+/// What a camera may see: all within an angle about its axis.
+struct ViewCone {
+  Eigen::Vector3f eye, axis;
+  float half_angle_rad;
+
+  bool sees(const Eigen::AlignedBox3f& box) const;
+};
+
 /// Light at the vertices of the static world: direct light of each lamp with soft shadows, and
 /// what the surfaces throw at each other (radiosity gathered with rays, two bounces). Worked out
 /// once, when it is made; from then on thread safe. People take light away from the vertices near
@@ -35,11 +43,11 @@ class Lighting {
  public:
   Lighting(const World& world, const RayCaster& caster);
 
-  /// Light of a frame seen from `eye` (world, metres): on the people where they may be seen from
+  /// Light of a frame seen from `view` (world, metres): on the people where they may be seen from
   /// there, and on the world with the shadows of those near. `people` cast them. `light` may be
   /// that of another frame.
-  void illuminate(const PeopleSurface& surface, const PosedPeople& people,
-                  const Eigen::Vector3f& eye, FrameLight& light) const;
+  void illuminate(const PeopleSurface& surface, const PosedPeople& people, const ViewCone& view,
+                  FrameLight& light) const;
 
  private:
   void castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
@@ -53,7 +61,10 @@ class Lighting {
     const Eigen::Vector3f* positions = nullptr;
     const Eigen::Vector3f* normals = nullptr;
     const float* openness = nullptr;
+    const std::vector<AreaLight>* lamps = nullptr;  ///< that may light them
   };
+  /// Those whose light on a body within the box is worth a ray.
+  std::vector<AreaLight> lampsFor(const Eigen::AlignedBox3f& box) const;
   void light(const Skin& skin, const PosedPeople& people, const Eigen::Vector3f& eye,
              Eigen::Vector3f* out) const;
   Eigen::Vector3f ambient(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const;

@@ -15,6 +15,9 @@ using Eigen::Vector3f;
 constexpr std::size_t kPacket = 16;
 constexpr int kShadowRays = 4;
 constexpr float kShadowReach_m = 1.6F;
+constexpr float kCells_m = 0.3F;      // over which the light of a vertex fades away
+constexpr float kFaint = 0.025F;      // light of a lamp that is not worth its rays
+constexpr float kLimbs_m = 0.2F;      // that a body or the camera moves during an exposure
 constexpr float kSeenReach_m = 9.0F;  // shadows further away are not worth their rays
 
 /// Calls body(first, count) for packets of [0, total), in parallel.
@@ -30,11 +33,28 @@ void forPackets(std::size_t total, const Body& body) {
 
 }  // namespace
 
+bool ViewCone::sees(const Eigen::AlignedBox3f& box) const {
+  const Vector3f d = box.center() - eye;
+  const float distance = d.norm(), radius = 0.5F * box.sizes().norm() + kLimbs_m;
+  if (distance <= radius) return true;
+  const float angle = std::acos(std::clamp(axis.dot(d) / distance, -1.0F, 1.0F));
+  return angle <= half_angle_rad + std::asin(radius / distance);
+}
+
 void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& people,
-                          const Vector3f& eye, FrameLight& light) const {
+                          const ViewCone& view, FrameLight& light) const {
+  const Vector3f& eye = view.eye;
   auto places = surface.places;
-  const auto is_far = [&](const auto& p) { return (p - eye.head<2>()).norm() > kSeenReach_m; };
-  places.erase(std::remove_if(places.begin(), places.end(), is_far), places.end());
+  float ceiling = 0.0F;
+  for (const auto& room : world_.rooms)
+    ceiling = std::max(ceiling, static_cast<float>(room.max().z()));
+  const auto is_unseen = [&](const Eigen::Vector2f& p) {
+    const float reach = kShadowReach_m + kCells_m;
+    const Vector3f low(p.x() - reach, p.y() - reach, 0.0F),
+        high(p.x() + reach, p.y() + reach, ceiling);
+    return (p - eye.head<2>()).norm() > kSeenReach_m || !view.sees({low, high});
+  };
+  places.erase(std::remove_if(places.begin(), places.end(), is_unseen), places.end());
   castShadows(places, people, light);
   light.people.resize(surface.positions.size());
   for (std::size_t person = 0; person < light.people.size(); ++person) {
@@ -43,11 +63,26 @@ void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& peopl
     const float* openness = people.avatar(person).openness().data();
     auto& out = light.people[person];
     out.resize(surface.positions[person].size());
+    Eigen::AlignedBox3f box;
+    for (std::size_t v = 0; v < out.size(); ++v) box.extend(positions[v]);
+    if (!view.sees(box)) continue;
+    const auto lamps = lampsFor(box);
     forPackets(out.size(), [&](std::size_t first, std::size_t count) {
-      this->light({count, positions + first, normals + first, openness + first}, people, eye,
-                  &out[first]);
+      this->light({count, positions + first, normals + first, openness + first, &lamps}, people,
+                  eye, &out[first]);
     });
   }
+}
+
+std::vector<AreaLight> Lighting::lampsFor(const Eigen::AlignedBox3f& box) const {
+  std::vector<AreaLight> lamps;
+  for (const AreaLight& lamp : world_.lights) {
+    // lampFactor() where both surfaces face each other.
+    const float distance = box.exteriorDistance(lamp.centre) - kLimbs_m;
+    const float most = 1.274F * lamp.half_u.cross(lamp.half_v).norm() * lamp.radiance.maxCoeff();
+    if (distance <= 0.1F || most >= kFaint * distance * distance) lamps.push_back(lamp);
+  }
+  return lamps;
 }
 
 void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
@@ -112,12 +147,12 @@ void Lighting::light(const Skin& skin, const PosedPeople& people, const Vector3f
     out[i] = seen[i] ? Vector3f(skin.openness[i] * ambient(p, n)) : Vector3f::Zero();
     sight.from[i] = p + 0.012F * n;
   }
-  for (const AreaLight& lamp : world_.lights) {
+  for (const AreaLight& lamp : *skin.lamps) {
     std::array<float, kPacket> factor{};
     for (std::size_t i = 0; i < skin.count; ++i) {
       sight.to[i] = lamp.centre;
       if (seen[i]) factor[i] = lampFactor(lamp, lamp.centre, sight.from[i], skin.normals[i]);
-      sight.asked[i] = factor[i] * lamp.radiance.maxCoeff() >= 0.025F;
+      sight.asked[i] = factor[i] * lamp.radiance.maxCoeff() >= kFaint;
     }
     const auto dark = caster_.blocks(sight, 0.02F);
     for (std::size_t i = 0; i < skin.count; ++i) sight.asked[i] = sight.asked[i] && !dark[i];

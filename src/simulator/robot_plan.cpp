@@ -15,9 +15,11 @@ class Planner {
   Planner(const Robot& spec, double duration_s) : spec_(spec), duration_s_(duration_s) {}
 
   std::vector<Piece> plan() {
-    place_.at = spec_.waypoints[0];
-    const Vector2d ahead = spec_.waypoints[1 % spec_.waypoints.size()] - place_.at;
-    place_.yaw = ahead.norm() > 0.0 ? std::atan2(ahead.y(), ahead.x()) : 0.0;
+    const Waypoint& first = spec_.waypoints[0];
+    place_.at = first.at;
+    const Vector2d ahead = spec_.waypoints[1 % spec_.waypoints.size()].at - place_.at;
+    const double yaw = ahead.norm() > 0.0 ? std::atan2(ahead.y(), ahead.x()) : 0.0;
+    place_.yaw = first.facing_rad.value_or(yaw);
     std::size_t next = 1;
     add(Piece::Kind::pause, 1.0, place_);
     while (time_s_ < duration_s_) {
@@ -57,10 +59,11 @@ class Planner {
   }
 
   /// Walks on towards a waypoint; false when a fall came between.
-  bool goTo(const Vector2d& goal) {
-    const Vector2d d = goal - place_.at;
+  bool goTo(const Waypoint& waypoint) {
+    const Vector2d goal = waypoint.at, d = goal - place_.at;
+    if (waypoint.facing_rad) turnTo(*waypoint.facing_rad);
     if (d.norm() < 0.02) return true;
-    turnTo(std::atan2(d.y(), d.x()));
+    if (!waypoint.facing_rad) turnTo(std::atan2(d.y(), d.x()));
     const double time = std::max(spec_.step_s, d.norm() / spec_.speed_m_s);
     const bool falls =
         next_fall_ < spec_.falls.size() && spec_.falls[next_fall_].at_s < time_s_ + time;

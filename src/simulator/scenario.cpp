@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "posefusion/core/error.hpp"
+#include "simulator/room_furniture.hpp"
 #include "simulator/scenario_parts.hpp"
 
 namespace pf::simulator {
@@ -99,6 +100,22 @@ void readTruth(YamlMap map, TruthConfig& truth) {
   map.finish();
 }
 
+/// Rooms and what stands in them, that of the file first.
+void readPlaces(YamlMap& map, Scenario& s) {
+  for (auto& room : map.maps("rooms")) {
+    const auto index = static_cast<std::uint32_t>(s.rooms.size());
+    s.rooms.push_back(readRoom(room, s.rooms, hash(s.seed, 47U, index)));
+  }
+  if (s.rooms.empty()) map.fail("rooms", "is missing or empty, expected at least one room");
+  for (auto& object : map.maps("objects")) {
+    s.objects.push_back(
+        readObject(object, hash(s.seed, 41U, static_cast<std::uint32_t>(s.objects.size()))));
+  }
+  for (const auto& room : s.rooms) {
+    for (auto& thing : furnish(room)) s.objects.push_back(std::move(thing));
+  }
+}
+
 }  // namespace
 
 Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& changes) {
@@ -116,12 +133,7 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   if (changes.seed) s.seed = *changes.seed;
   s.fps = map.number("fps", s.fps, 0.5, 240.0);
   s.dropped = map.number("dropped", s.dropped, 0.0, 0.9);
-  for (auto& room : map.maps("rooms")) s.rooms.push_back(readRoom(room));
-  if (s.rooms.empty()) map.fail("rooms", "is missing or empty, expected at least one room");
-  for (auto& object : map.maps("objects")) {
-    s.objects.push_back(
-        readObject(object, hash(s.seed, 41U, static_cast<std::uint32_t>(s.objects.size()))));
-  }
+  readPlaces(map, s);
   for (auto& person : map.maps("people")) {
     s.people.push_back(
         readPerson(person, hash(s.seed, 43U, static_cast<std::uint32_t>(s.people.size()))));

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/scenario_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "simulator/room_furniture.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -49,8 +52,14 @@ Action readAction(YamlMap& map) {
 
 Robot readRobot(YamlMap& map) {
   Robot r;
-  r.waypoints = map.points("waypoints");
+  for (const Vector3d& place : map.places("waypoints")) {
+    r.waypoints.emplace_back(place.x(), place.y());
+    if (!std::isnan(place.z())) r.waypoints.back().facing_rad = place.z() * M_PI / 180.0;
+  }
   if (r.waypoints.empty()) map.fail("waypoints", "is missing, expected [[x, y], ...]");
+  r.finds_way = map.flag("finds_way", r.finds_way);
+  r.stray_m = map.number("stray_m", r.stray_m, 0.0, 10.0);
+  if (r.stray_m > 0.0 && !r.finds_way) map.fail("stray_m", "needs finds_way: true");
   r.repeats = map.flag("repeats", r.repeats);
   r.turns_body = !map.has("look_at_m");
   r.target = map.vector3("look_at_m", r.target);
@@ -80,6 +89,36 @@ Robot readRobot(YamlMap& map) {
   return r;
 }
 
+void readFurniture(YamlMap map, Furniture& furniture) {
+  furniture.style = map.word("style", furniture.style, furnitureStyles());
+  furniture.seed = static_cast<std::uint32_t>(
+      map.integer("seed", static_cast<int>(furniture.seed % 1000000001U), 0, 1000000000));
+  map.finish();
+}
+
+/// A room as new, or as the one that it is like, with its own name.
+RoomSpec readLike(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed) {
+  const auto find = [&](const std::string& name) {
+    return std::find_if(before.begin(), before.end(),
+                        [&](const RoomSpec& room) { return room.name == name; });
+  };
+  RoomSpec r;
+  r.furniture.seed = seed;
+  const std::string name = map.text("name", ""), like = map.text("like", "");
+  if (!name.empty() && find(name) != before.end()) {
+    map.fail("name", "is '" + name + "', as that of a room before");
+  }
+  if (!like.empty()) {
+    if (find(like) == before.end()) {
+      map.fail("like", "is '" + like + "', expected the name of a room before");
+    }
+    r = *find(like);
+  }
+  r.name = name;
+  r.like = like;
+  return r;
+}
+
 HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
   HandHeld h;
   h.pattern = pattern;
@@ -94,8 +133,8 @@ HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
 
 }  // namespace
 
-RoomSpec readRoom(YamlMap& map) {
-  RoomSpec r;
+RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed) {
+  RoomSpec r = readLike(map, before, seed);
   r.origin_m = map.vector2("origin_m", r.origin_m);
   r.size_m = map.vector3("size_m", r.size_m);
   if (r.size_m.minCoeff() < 0.5) map.fail("size_m", "is too small, expected 0.5 m or more");
@@ -109,6 +148,8 @@ RoomSpec readRoom(YamlMap& map) {
   r.lamps_y = static_cast<int>(lamps.y());
   if (lamps.minCoeff() < 0 || lamps.maxCoeff() > 10) map.fail("lamps", "expected 0 to 10 each way");
   r.lamp_radiance = map.number("lamp_radiance", r.lamp_radiance, 0.0, 1000.0);
+  if (map.has("furniture")) readFurniture(map.map("furniture"), r.furniture);
+  if (map.has("doorways")) r.doorways.clear();
   for (auto& entry : map.maps("doorways")) {
     Doorway d;
     d.wall = entry.word("wall", "south", {"south", "north", "west", "east"});
@@ -151,6 +192,7 @@ PersonSpec readPerson(YamlMap& map, std::uint32_t seed) {
   p.yaw_rad = map.angle("yaw_deg", 0.0);
   p.delay_s = map.number("delay_s", 0.0, 0.0, 36000.0);
   p.repeats = map.flag("repeats", true);
+  p.stray_m = map.number("stray_m", p.stray_m, 0.0, 10.0);
   for (auto& action : map.maps("script")) p.script.push_back(readAction(action));
   map.finish();
   return p;

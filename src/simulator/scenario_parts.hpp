@@ -13,7 +13,8 @@ std::string scenarioText(const std::string& name);
 /// All names, for messages.
 std::string joinedNames();
 
-RoomSpec readRoom(YamlMap& map);
+/// A room that is `like` another one begins as a copy of it, which has to be among those `before`.
+RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed);
 ObjectSpec readObject(YamlMap& map, std::uint32_t seed);
 PersonSpec readPerson(YamlMap& map, std::uint32_t seed);
 

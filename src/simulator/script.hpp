@@ -33,6 +33,7 @@ struct PersonSpec {
   double yaw_rad = 0.0;
   std::vector<Action> script;  ///< empty: stands
   bool repeats = true;
+  double stray_m = 0.0;  ///< by the seed, start and goals of walking; see settled()
   double delay_s = 0.0;  ///< before the first action
 };
 

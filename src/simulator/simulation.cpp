@@ -14,12 +14,13 @@ namespace pf::simulator {
 namespace {
 
 constexpr std::int64_t kFirstStamp_ns = 1000000000000;  // 1000 s: a bag cannot begin at zero
+constexpr double kVisitStep_s = 0.05;
 constexpr double kAfter_s = 0.05;  // of truth after the last frame: its depth is taken later
 
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario) try : state_(std::make_unique<State>(scenario)) {
-  checkScene(scenario, state_->world);
+  checkScene(state_->scenario, state_->world);
   checkCamera(*state_->path, state_->world, state_->caster, scenario.start_s + scenario.duration_s);
 } catch (const InputError& error) {
   throw InputError(scenario.name + ": " + error.what());
@@ -92,6 +93,27 @@ std::vector<Event> Simulation::events(int frames) const {
     events.push_back({e.kind, std::max(e.start_s, from), std::min(e.end_s, to)});
   }
   return events;
+}
+
+std::vector<Visit> Simulation::visits(int frames) const {
+  const Scenario& scenario = state_->scenario;
+  const double from = scenario.start_s, to = from + frames / scenario.fps + kAfter_s;
+  std::vector<Visit> visits;
+  for (double t = from; t < to; t += kVisitStep_s) {
+    const Eigen::Vector2d at = state_->path->at(t).translation().head<2>();
+    const auto room = std::find_if(scenario.rooms.begin(), scenario.rooms.end(), [&](auto& r) {
+      const Eigen::Array2d inside = at - r.origin_m;
+      return (inside >= 0.0).all() && (inside <= r.size_m.template head<2>().array()).all();
+    });
+    if (room == scenario.rooms.end()) continue;
+    const bool moves_on = visits.empty() || visits.back().room != room->name;
+    if (moves_on && !visits.empty()) visits.back().end_s = t;
+    if (moves_on) visits.push_back({room->name, t, to});
+  }
+  visits.erase(std::remove_if(visits.begin(), visits.end(),
+                              [](const Visit& visit) { return visit.room.empty(); }),
+               visits.end());
+  return visits;
 }
 
 std::int64_t Simulation::stampOf(double time_s) const {

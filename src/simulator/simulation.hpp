@@ -38,6 +38,13 @@ struct SimulatedFrame {
   double smear_px = 0.0;  ///< how far the still world moved in the picture during the exposure
 };
 
+/// The camera is in a room that has a name.
+struct Visit {
+  std::string room;
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
 /// A scenario come alive. Frames are asked for in order, because the exposure follows the picture.
 class Simulation {
  public:
@@ -56,6 +63,8 @@ class Simulation {
   Trajectory truth(int frames) const;
   /// What happened in that time, cut to it; seconds since the start of the scenario.
   std::vector<Event> events(int frames) const;
+  /// Which rooms the camera is in, in that time. A doorway belongs to the room before it.
+  std::vector<Visit> visits(int frames) const;
   std::int64_t stampOf(double time_s) const;
   const World& world() const;
   const Scenario& scenario() const;

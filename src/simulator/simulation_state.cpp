@@ -5,6 +5,7 @@
 
 #include "simulator/posture.hpp"
 #include "simulator/random.hpp"
+#include "simulator/settled.hpp"
 #include "simulator/simulation_state.hpp"
 #include "simulator/truth.hpp"
 
@@ -42,14 +43,14 @@ ViewSample viewAt(const Isometry3d& T_world_camera, double time) {
 }
 
 Simulation::State::State(const Scenario& s)
-    : scenario(s),
-      world(buildWorld(s)),
+    : world(buildWorld(s)),
+      scenario(settled(s, world)),
       people(buildPeople(s)),
       caster(world.mesh),
       lighting(world, caster),
-      path(buildPath(s)),
+      path(buildPath(scenario)),
       crowd(
-          s.people, Walkway(world, kWalkClearance_m),
+          scenario.people, Walkway(world, kWalkClearance_m),
           [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
           s.start_s + s.duration_s + 1.0),
       renderer(world, caster),
@@ -155,9 +156,21 @@ void Simulation::State::prepare(Shot& shot, const Moments& m) const {
     people[i].skinNormals(middle[i], surface.normals[i]);
     surface.places.push_back(crowd.at(i, m.color).at.cast<float>());
   }
-  const Vector3f eye = path->at(m.color).translation().cast<float>();
-  lighting.illuminate(surface, shot.in_color, eye, shot.light);
+  lighting.illuminate(surface, shot.in_color, viewConeOf(m), shot.light);
   shot.moments = m;
+}
+
+ViewCone Simulation::State::viewConeOf(const Moments& m) const {
+  const PinholeCamera& c = scenario.camera;
+  const Isometry3d T = path->at(m.color);
+  const double x = std::max(c.cx, c.width - c.cx) / c.fx,
+               y = std::max(c.cy, c.height - c.cy) / c.fy;
+  double angle = std::atan(std::hypot(x, y));
+  for (const double time : {m.first, m.last}) {
+    angle += Eigen::AngleAxisd(T.linear().transpose() * path->at(time).linear()).angle();
+  }
+  return {T.translation().cast<float>(), T.linear().col(2).cast<float>(),
+          static_cast<float>(angle)};
 }
 
 Shutter Simulation::State::shutterFor(const Moments& m, int samples) const {

@@ -33,6 +33,7 @@ struct Simulation::State {
   double smearOf(const Moments& m) const;
   double limbSmearOf(const Moments& m) const;  ///< of the people's hands and feet, at the most
   int samplesFor(double smear_px) const;
+  ViewCone viewConeOf(const Moments& m) const;
   Shutter shutterFor(const Moments& m, int samples) const;
 
   /// A frame about to be taken: its people posed and lit.
@@ -59,8 +60,8 @@ struct Simulation::State {
   void draw(const Shot& shot, SimulatedFrame& out);
   void observePeople(const Moments& m, SimulatedFrame& out) const;
 
-  Scenario scenario;
   World world;
+  Scenario scenario;  // settled in that world
   std::vector<Avatar> people;
   RayCaster caster;
   Lighting lighting;

@@ -30,6 +30,30 @@ Json personJson(const PersonTruth& person) {
   return {{"id", person.id}, {"name", person.name}, {"pixels", person.pixels}, {"joints", joints}};
 }
 
+/// The rooms that have names: their places, and which they are like.
+Json roomsJson(const Scenario& scenario) {
+  Json rooms = Json::array();
+  for (const RoomSpec& room : scenario.rooms) {
+    if (room.name.empty()) continue;
+    const Eigen::Vector2d low = room.origin_m, high = low + room.size_m.head<2>();
+    rooms.push_back({{"name", room.name},
+                     {"low_m", {rounded(low.x(), 1e4), rounded(low.y(), 1e4)}},
+                     {"high_m", {rounded(high.x(), 1e4), rounded(high.y(), 1e4)}}});
+    if (!room.like.empty()) rooms.back()["like"] = room.like;
+  }
+  return rooms;
+}
+
+Json visitsJson(const Simulation& simulation, int frames) {
+  Json visits = Json::array();
+  for (const Visit& visit : simulation.visits(frames)) {
+    visits.push_back({{"room", visit.room},
+                      {"start", formatStamp(simulation.stampOf(visit.start_s))},
+                      {"end", formatStamp(simulation.stampOf(visit.end_s))}});
+  }
+  return visits;
+}
+
 pf::SurfacePoint pointOf(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
                          const Eigen::Vector3f& color) {
   return {position, normal, {srgbOf(color[0]), srgbOf(color[1]), srgbOf(color[2])}};
@@ -106,13 +130,16 @@ void saveEvents(const std::string& path, const Simulation& simulation,
                     {"gain", rounded(frame.gain, 1e3)},
                     {"smear_px", rounded(frame.smear_px, 100)}});
   }
+  Json all = {{"scenario", simulation.scenario().name},
+              {"seed", simulation.scenario().seed},
+              {"events", events},
+              {"frames", list}};
+  if (const Json rooms = roomsJson(simulation.scenario()); !rooms.empty()) {
+    all["rooms"] = rooms;
+    all["visits"] = visitsJson(simulation, static_cast<int>(frames.size()));
+  }
   AtomicFile file(path);
-  file.stream() << Json({{"scenario", simulation.scenario().name},
-                         {"seed", simulation.scenario().seed},
-                         {"events", events},
-                         {"frames", list}})
-                       .dump(1)
-                << "\n";
+  file.stream() << all.dump(1) << "\n";
   file.commit();
 }
 

@@ -21,7 +21,8 @@ FrameRecord recordOf(const SimulatedFrame& frame);
 /// 2-D and 3-D joints of everybody in every frame, as JSON.
 void saveJoints(const std::string& path, const std::vector<FrameRecord>& frames);
 
-/// Falls, blurred and dropped frames, exposure, as JSON.
+/// Falls, blurred and dropped frames, exposure, as JSON; where rooms have names, their places and
+/// when the camera was in them.
 void saveEvents(const std::string& path, const Simulation& simulation,
                 const std::vector<FrameRecord>& frames);
 

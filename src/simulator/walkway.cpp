@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kCell_m = 0.1;
+constexpr double kBody_m = 0.13;  // that a body keeps from walls at the least
 
 bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
   const double c = std::cos(f.yaw), s = std::sin(f.yaw);
@@ -23,7 +24,8 @@ bool covers(const Footprint& f, const Vector2d& p, double margin_m) {
 
 }  // namespace
 
-Walkway::Walkway(const World& world, double clearance_m) {
+Walkway::Walkway(const World& world, double clearance_m)
+    : rooms_(world.rooms), passages_(world.passages) {
   Eigen::AlignedBox3d box;
   for (const auto& room : world.rooms) box.extend(room);
   if (box.isEmpty()) return;
@@ -62,6 +64,16 @@ bool Walkway::isFree(const Vector2d& p) const {
   return cell >= 0 && !free_.empty() && free_[static_cast<std::size_t>(cell)] != 0;
 }
 
+bool Walkway::isFloor(const Vector2d& p) const {
+  const auto has_room = [&](const auto& room) {
+    return (p - room.min().template head<2>()).minCoeff() > kBody_m &&
+           (room.max().template head<2>() - p).minCoeff() > kBody_m;
+  };
+  return std::any_of(rooms_.begin(), rooms_.end(), has_room) ||
+         std::any_of(passages_.begin(), passages_.end(),
+                     [&](const Footprint& passage) { return covers(passage, p, kBody_m); });
+}
+
 Vector2d Walkway::nearestFree(const Vector2d& p) const {
   if (isFree(p) || free_.empty()) return p;
   double best = std::numeric_limits<double>::infinity();
@@ -82,6 +94,37 @@ bool Walkway::seesFree(const Vector2d& a, const Vector2d& b) const {
   return true;
 }
 
+std::vector<int> Walkway::freeAround(int cell) const {
+  std::vector<int> cells;
+  for (int dr = -1; dr <= 1; ++dr) {
+    for (int dc = -1; dc <= 1; ++dc) {
+      const int col = cell % columns_ + dc, row = cell / columns_ + dr;
+      if (col < 0 || row < 0 || col >= columns_ || row >= rows_) continue;
+      const int next = row * columns_ + col;
+      if (free_[static_cast<std::size_t>(next)] != 0) cells.push_back(next);
+    }
+  }
+  return cells;
+}
+
+void Walkway::keepReachable(const Vector2d& from) {
+  const int start = cellAt(nearestFree(from));
+  if (start < 0) return;
+  std::vector<char> reached(free_.size(), 0);
+  std::vector<int> open{start};
+  reached[static_cast<std::size_t>(start)] = 1;
+  while (!open.empty()) {
+    const int cell = open.back();
+    open.pop_back();
+    for (const int next : freeAround(cell)) {
+      if (reached[static_cast<std::size_t>(next)] != 0) continue;
+      reached[static_cast<std::size_t>(next)] = 1;
+      open.push_back(next);
+    }
+  }
+  free_ = std::move(reached);
+}
+
 std::vector<int> Walkway::search(int from, int to) const {
   // A* with the straight distance; ties by cell number, so the way is always the same.
   std::vector<double> cost(free_.size(), std::numeric_limits<double>::infinity());
@@ -94,18 +137,13 @@ std::vector<int> Walkway::search(int from, int to) const {
     const int cell = open.top().second;
     open.pop();
     if (cell == to) break;
-    for (int dr = -1; dr <= 1; ++dr) {
-      for (int dc = -1; dc <= 1; ++dc) {
-        const int col = cell % columns_ + dc, row = cell / columns_ + dr;
-        if (col < 0 || row < 0 || col >= columns_ || row >= rows_) continue;
-        const int next = row * columns_ + col;
-        if (free_[static_cast<std::size_t>(next)] == 0) continue;
-        const double g = cost[static_cast<std::size_t>(cell)] + std::hypot(dr, dc);
-        if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
-        cost[static_cast<std::size_t>(next)] = g;
-        parent[static_cast<std::size_t>(next)] = cell;
-        open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCell_m, next);
-      }
+    for (const int next : freeAround(cell)) {
+      const double dr = next / columns_ - cell / columns_, dc = next % columns_ - cell % columns_;
+      const double g = cost[static_cast<std::size_t>(cell)] + std::hypot(dr, dc);
+      if (g >= cost[static_cast<std::size_t>(next)] - 1e-9) continue;
+      cost[static_cast<std::size_t>(next)] = g;
+      parent[static_cast<std::size_t>(next)] = cell;
+      open.emplace(g + (centreOf(next) - centreOf(to)).norm() / kCell_m, next);
     }
   }
   std::vector<int> cells;

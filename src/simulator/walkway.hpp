@@ -19,8 +19,15 @@ class Walkway {
 
   bool isFree(const Eigen::Vector2d& p) const;
 
+  /// Whether a body can be there, whatever stands on the floor: a little away from walls, or in a
+  /// doorway.
+  bool isFloor(const Eigen::Vector2d& p) const;
+
   /// The nearest free place.
   Eigen::Vector2d nearestFree(const Eigen::Vector2d& p) const;
+
+  /// From now on only what can be reached from there is free.
+  void keepReachable(const Eigen::Vector2d& from);
 
   /// Whether a way leads from one to the other, each moved to the nearest free place.
   bool connects(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
@@ -34,10 +41,13 @@ class Walkway {
   Eigen::Vector2d centreOf(int cell) const;
   bool seesFree(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
   std::vector<int> search(int from, int to) const;
+  std::vector<int> freeAround(int cell) const;
 
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
   int columns_ = 1, rows_ = 1;
   std::vector<char> free_;
+  std::vector<Eigen::AlignedBox3d> rooms_;
+  std::vector<Footprint> passages_;
 };
 
 }  // namespace pf::simulator

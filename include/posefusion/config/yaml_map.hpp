@@ -41,7 +41,8 @@ class YamlMap {
   std::optional<Eigen::Vector3d> maybeVector3(const std::string& key);
   /// Two or three numbers; z is NaN where only two are given.
   std::optional<Eigen::Vector3d> placeOf(const std::string& key);
-  std::vector<Eigen::Vector2d> points(const std::string& key);
+  /// A list of those.
+  std::vector<Eigen::Vector3d> places(const std::string& key);
   YamlMap map(const std::string& key);  ///< a missing one is empty
   std::vector<YamlMap> maps(const std::string& key);
 
