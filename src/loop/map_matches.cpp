@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kNearest = 2;
 // Guesses that differ by less lead to the same.
 constexpr double kSame_m = 0.1, kSame_rad = 0.1;
-// Views that are looked for by drawing: a second or more each.
-constexpr std::size_t kDrawnFor = 24;
+// Views that are looked for by drawing: seconds each, of a large map.
+constexpr std::size_t kDrawnFor = 8;
 
 KeyframeView placed(KeyframeView view, const MapPose& pose) {
   view.pose = pose;

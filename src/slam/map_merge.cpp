@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
 #include "posefusion/graph/consensus.hpp"
 #include "posefusion/loop/map_matches.hpp"
 #include "posefusion/map/surfel_map.hpp"
@@ -21,6 +22,9 @@ namespace {
 // Loops of different places and moments that have to agree, and how many more they have to be than
 // those that agree on something else.
 constexpr std::size_t kEnough = 3, kTimesMore = 2;
+// Motions between the maps that differ by less lead to the same; so many are tried at most.
+constexpr double kAlike_m = 0.3, kAlike_rad = 0.1;
+constexpr std::size_t kMostTried = 8;
 constexpr double kAnyMemory_mb = 1e6;  // the limit is for mapping: here it would drop surfels
 
 /// The map as a mapper with these settings has it, with its depth corrected.
@@ -46,8 +50,11 @@ class Merger {
 
   /// Why not; empty: they are one.
   std::string merge(MergedMap& merged) {
-    std::vector<PoseConstraint> loops = found(merged, &Merger::byFeatures);
-    if (loops.empty()) loops = found(merged, &Merger::byDrawing);
+    std::vector<PoseConstraint> loops;
+    for (const Search search :
+         {&Merger::byFeatures, &Merger::byMatches, &Merger::byDrawing, &Merger::byMatches}) {
+      if (loops.empty()) loops = found(merged, search);
+    }
     merged.agreeing = loops.size();
     if (loops.empty()) return reason_;
     close(loops);
@@ -82,25 +89,52 @@ class Merger {
     return matcher().placesIn(std::make_shared<const SurfelMap>(mapper_.map()), views(false));
   }
 
-  /// Loops that can be believed; none: the reason is known then.
+  /// What each match says of all other views: there they are looked for too.
+  std::vector<KeyframeView> byMatches() const {
+    std::vector<KeyframeView> guesses;
+    std::vector<Eigen::Isometry3d> tried;
+    const std::vector<KeyframeView> second = views(false);
+    for (const PoseConstraint& match : matches_) {
+      const Keyframe &from = keyframe(match.from), &to = keyframe(match.to);
+      const Eigen::Isometry3d T = from.T_map_camera * match.T_from_to * to.T_map_camera.inverse();
+      const auto is_like = [&](const auto& other) {
+        return isWithin(T.inverse() * other, kAlike_m, kAlike_rad);
+      };
+      if (tried.size() == kMostTried || std::any_of(tried.begin(), tried.end(), is_like)) continue;
+      tried.push_back(T);
+      for (KeyframeView view : second) {
+        if (view.pose.fragment != to.fragment) continue;
+        view.pose = {from.fragment, T * view.pose.T_map_camera};
+        guesses.push_back(std::move(view));
+      }
+    }
+    std::stable_sort(guesses.begin(), guesses.end(),
+                     [](const auto& a, const auto& b) { return a.id < b.id; });
+    return guesses;
+  }
+
+  /// Takes in what a search finds. Returns loops that can be believed; none: the reason is known
+  /// then.
   std::vector<PoseConstraint> found(MergedMap& merged, Search search) {
     for (const PoseConstraint& match : matcher().verified((this->*search)())) {
-      matches_.push_back(match);
+      const auto is_same = [&](const auto& other) {
+        return other.from == match.from && other.to == match.to;
+      };
+      if (std::none_of(matches_.begin(), matches_.end(), is_same)) matches_.push_back(match);
     }
     merged.recognised = matches_.size();
     const PoseGraph& graph = mapper_.backEnd().graph();
     std::map<std::pair<int, int>, std::vector<PoseConstraint>> by_fragments;
     for (const PoseConstraint& match : matches_) {
-      by_fragments[{fragmentOf(match.from), fragmentOf(match.to)}].push_back(match);
+      by_fragments[{keyframe(match.from).fragment, keyframe(match.to).fragment}].push_back(match);
     }
     std::vector<PoseConstraint> loops;
     reason_ = "nothing of the second was recognised in the first";
-    for (const auto& [fragments, matches] : by_fragments) {
+    for (const auto& entry : by_fragments) {
       const Consensus consensus =
-          consensusOf(config_.graph, graph.keyframes(), graph.constraints(), matches);
-      if (isBelieved(consensus)) {
-        loops.insert(loops.end(), consensus.agreeing.begin(), consensus.agreeing.end());
-      }
+          consensusOf(config_.graph, graph.keyframes(), graph.constraints(), entry.second);
+      if (!isBelieved(consensus)) continue;
+      loops.insert(loops.end(), consensus.agreeing.begin(), consensus.agreeing.end());
     }
     return loops;
   }
@@ -120,8 +154,8 @@ class Merger {
     return false;
   }
 
-  int fragmentOf(int keyframe) const {
-    return mapper_.backEnd().graph().keyframes()[static_cast<std::size_t>(keyframe)].fragment;
+  const Keyframe& keyframe(int number) const {
+    return mapper_.backEnd().graph().keyframes()[static_cast<std::size_t>(number)];
   }
 
   /// As any loop that is found while mapping: graph, surfels, layers and poses follow.
