@@ -12,9 +12,6 @@
 namespace pf {
 namespace {
 
-// Where two pictures look different ways a surface is at different places in them, where the sensor
-// is off differently: what joins them so is wrong by far more than its covariance says.
-constexpr double kMostTurn_rad = 0.26;
 constexpr double kNearTurn_rad = 0.4;  // by poses that may have drifted
 constexpr double kMostUnlike = 0.5;    // dissimilarity of ferns that is looked at
 constexpr std::size_t kFernMatches = 2;

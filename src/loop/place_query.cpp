@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/frame/depth_filter.hpp"
@@ -10,6 +11,8 @@ namespace {
 constexpr double kUpReach_rad = 0.9;
 // A head that lies on the floor is not higher above it.
 constexpr double kLyingHeight_m = 0.6;
+// So far from each other are poses to search around: a search reaches 0.9 m each way.
+constexpr double kRoomSide_m = 1.0;
 
 /// Points and normals of a level, camera frame.
 struct LevelPoints {
@@ -61,6 +64,19 @@ PlaceSearchConfig wideSearch() {
   config.step_m = 0.3;
   config.headings = 36;
   return config;
+}
+
+std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses) {
+  std::vector<MapPose> chosen;
+  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+    const Eigen::Vector3d at = pose->T_map_camera.translation();
+    const auto near = [&](const MapPose& other) {
+      return other.fragment == pose->fragment &&
+             (other.T_map_camera.translation() - at).norm() < kRoomSide_m;
+    };
+    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
+  }
+  return chosen;
 }
 
 PlaceQuery placeQuery(const WorkingFrame& frame, const Eigen::Vector3d& up_guess) {

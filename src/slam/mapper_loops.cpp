@@ -8,28 +8,14 @@
 namespace pf {
 namespace {
 
-// A camera anywhere in a loaded map is looked for around keyframes so far from each other: a search
-// reaches 0.9 m each way. So many of them at once, in turns, that an answer comes soon.
-constexpr double kRoomSide_m = 1.0;
+// A camera anywhere in a loaded map is looked for around so many poses at once, in turns, that an
+// answer comes soon.
 constexpr std::size_t kRoomsAtOnce = 4;
 // Half of that reach, as the reckoned place is off itself; and twice of it, beyond which a search
 // hardly helps.
 constexpr double kCovered_m = 0.45, kMostUnsure_m = 1.8;
 
 }  // namespace
-
-std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses) {
-  std::vector<MapPose> chosen;
-  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
-    const Eigen::Vector3d at = pose->T_map_camera.translation();
-    const auto near = [&](const MapPose& other) {
-      return other.fragment == pose->fragment &&
-             (other.T_map_camera.translation() - at).norm() < kRoomSide_m;
-    };
-    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(*pose);
-  }
-  return chosen;
-}
 
 /// The camera was located. In a fragment the search for the fragment's place goes on.
 void Mapper::State::endSearch() {

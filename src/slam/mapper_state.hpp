@@ -20,9 +20,6 @@ namespace pf {
 
 constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
 
-/// Poses from which a search reaches around all of these; the last ones first.
-std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses);
-
 /// Where a fragment would lie in another.
 struct FragmentPlace {
   LoopConstraint constraint;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "map_calibration.hpp"
+#include "map_merge.hpp"
 #include "map_refine.hpp"
 #include "posefusion/config/yaml_map.hpp"
 #include "posefusion/core/error.hpp"
@@ -169,8 +170,16 @@ int lookIntoMap(int argc, char** argv) {
   CLI::App* const refining =
       command("refine", "aligns all keyframes that see the same surface, into a new file");
   refining->add_option("-o,--output", refined, "the new file")->required();
+  std::string second, merged;
+  CLI::App* const merging =
+      command("merge", "makes one map of two that know a place in common, in a new file");
+  merging->add_option("second", second, "map file that comes into the coordinates of the first")
+      ->required();
+  merging->add_option("-o,--output", merged, "the new file")->required();
   CLI11_PARSE(app, argc, argv);
-  if (*refining) {
+  if (*merging) {
+    mergeMaps(file, second, merged);
+  } else if (*refining) {
     refineMap(file, refined);
   } else if (*repairing) {
     repair(file, repaired);

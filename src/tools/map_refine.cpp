@@ -2,33 +2,15 @@
 #include "map_refine.hpp"
 
 #include <cstdio>
-#include <filesystem>
 
+#include "map_output.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 
 namespace pf {
-namespace {
-
-void write(const Mapper& mapper, const PinholeCamera& camera, const Config& config,
-           const std::string& output) {
-  const std::string partial = output + ".part";
-  std::error_code ignored;
-  std::filesystem::remove(partial, ignored);
-  {
-    MapRecording recording(partial, MapWriter::Mode::create, toYaml(config), mapper);
-    recording.update(camera, mapper);
-    recording.finish(mapper);
-  }
-  renameMapFile(partial, output);
-}
-
-}  // namespace
 
 void refineMap(const std::string& file, const std::string& output) {
-  if (std::filesystem::exists(output)) {
-    throw InputError(output + ": is there already, expected the name of a new map");
-  }
+  requireNew(output);
   const Config config = settingsOf(MapReader(file).content(), file);
   SavedMap map = readSavedMap(file);
   const PinholeCamera camera = map.camera;
@@ -40,7 +22,7 @@ void refineMap(const std::string& file, const std::string& output) {
   }
   const Mapper::Refinement done = mapper.refine();
   if (!done.reason.empty()) throw InputError(file + ": nothing to refine: " + done.reason);
-  write(mapper, camera, config, output);
+  writeMap(mapper, camera, config, output);
   std::printf("%s: %s\n", output.c_str(), done.text().c_str());
 }
 

@@ -19,6 +19,11 @@ struct KeyframeView {
   bool nobody_in_view = true;
 };
 
+/// Where two pictures look more than this different ways a surface is at different places in them,
+/// where the sensor is off differently: what joins them so is wrong by far more than its covariance
+/// says.
+constexpr double kMostTurn_rad = 0.26;
+
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
                           bool nobody_in_view);
 

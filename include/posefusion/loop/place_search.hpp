@@ -49,6 +49,9 @@ struct PlaceSearchConfig {
 /// The search 3 m each way, for a map that has just been loaded.
 PlaceSearchConfig wideSearch();
 
+/// Of these poses some from which such a search reaches around all; the last ones first.
+std::vector<MapPose> spreadOut(const std::vector<MapPose>& poses);
+
 struct PlaceCandidate {
   MapPose pose;
   double score = 0;        ///< at most 1.5; what the candidates are sorted by
