@@ -90,6 +90,19 @@ class Bench(unittest.TestCase):
         self.assertTrue(-90 <= min(turns) < -60 and 60 < max(turns) <= 90, turns)
         self.assertTrue(all(0 <= fall["skip_m"] <= 0.8 for fall in falls))
 
+    def test_a_part_of_a_sequence_has_its_frames_alone(self):
+        from bench_merge import part_of
+        with tempfile.TemporaryDirectory() as folder:
+            whole = pathlib.Path(folder, "whole")
+            whole.mkdir()
+            lines = [f"{i} rgb/{i}.png {i} depth/{i}.png\n" for i in range(10)]
+            (whole / "associations.txt").write_text("# head\n" + "".join(lines))
+            (whole / "camera.yaml").write_text("width: 4\n")
+            for _ in range(2):  # a second time it is made anew
+                part = part_of(whole, pathlib.Path(folder, "part"), 0.2, 0.5)
+                self.assertEqual((part / "associations.txt").read_text(), "".join(lines[2:5]))
+                self.assertEqual((part / "camera.yaml").read_text(), "width: 4\n")
+
     def test_places_are_compared_by_distance_and_angle(self):
         from bench_maps import is_far, poses
         with tempfile.TemporaryDirectory() as folder:

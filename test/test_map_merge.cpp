@@ -167,6 +167,25 @@ TEST(MapMerge, OneCommonPictureIsTooLittle) {
   EXPECT_NE(reason.find("too little was recognised: 1 places agree"), std::string::npos) << reason;
 }
 
+TEST(MapMerge, WhatContradictsItselfIsRefused) {
+  // Tracking has jumped by a metre, and does not know.
+  SavedMap broken = firstHalf();
+  const std::size_t middle = broken.keyframes.size() / 2;
+  const Eigen::Isometry3d jump(Eigen::Translation3d(0, 0, 1));
+  for (std::size_t i = middle; i < broken.keyframes.size(); ++i) {
+    Keyframe& k = broken.keyframes[i];
+    k.T_map_camera = jump * k.T_map_camera;
+  }
+  for (PoseConstraint& c : broken.constraints) {
+    const auto pose = [&](int i) {
+      return broken.keyframes[static_cast<std::size_t>(i)].T_map_camera;
+    };
+    c.T_from_to = pose(c.from).inverse() * pose(c.to);
+  }
+  const std::string reason = refusal(firstHalf(), broken);
+  EXPECT_NE(reason.find("what was recognised is contradictory"), std::string::npos) << reason;
+}
+
 TEST(MapMerge, WithoutPicturesNothingIsRecognised) {
   SavedMap blind = firstHalf();
   blind.views.clear();

@@ -119,4 +119,20 @@ std::vector<PoseConstraint> MapMatcher::verified(const std::vector<KeyframeView>
   return found;
 }
 
+LookedThrough lookedThrough(const SurfelMap& map, const std::vector<KeyframeView>& views,
+                            const DepthSensor& sensor) {
+  const VerifyLimits limits;
+  LookedThrough result;
+  PlaceVerifier verifier({});
+  KeyframePicture picture;
+  for (const KeyframeView& view : views) {
+    picture.assign(view, sensor);
+    const PlaceAgreement seen = verifier.compare(map, picture.frame, view.pose);
+    if (seen.overlap < limits.min_overlap) continue;
+    ++result.compared;
+    result.through += seen.seen_through > limits.max_seen_through ? 1U : 0U;
+  }
+  return result;
+}
+
 }  // namespace pf

@@ -158,6 +158,15 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
   return PlaceDoubt::none;
 }
 
+PlaceAgreement PlaceVerifier::compare(const SurfelMap& map, const WorkingFrame& frame,
+                                      const MapPose& pose) {
+  RenderOptions options;
+  options.age = SurfelAge::all;
+  options.fragment = pose.fragment;
+  renderer_.render(map, frame.camera, pose.T_map_camera, options, view_);
+  return compareViews(frame, view_);
+}
+
 PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& frame,
                                    const MapPose& candidate) {
   RenderOptions options;
@@ -177,8 +186,7 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
     if (!verdict.alignment.converged && i > 0) break;
     if (step.translation().norm() < kSettled_m && angleOf(step) < kSettled_rad) break;
   }
-  renderer_.render(map, frame.camera, verdict.alignment.T_map_camera, options, view_);
-  verdict.agreement = compareViews(frame, view_);
+  verdict.agreement = compare(map, frame, verdict.pose());
   verdict.doubt = judgePlace(verdict, candidate.T_map_camera, limits_);
   return verdict;
 }

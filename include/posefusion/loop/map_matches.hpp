@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,15 @@
 #include "posefusion/loop/keyframe_pair.hpp"
 
 namespace pf {
+
+/// Of pictures that see where the map shows something, how many see beyond it.
+struct LookedThrough {
+  std::size_t compared = 0, through = 0;
+};
+
+/// `views`: placed in the map.
+LookedThrough lookedThrough(const SurfelMap& map, const std::vector<KeyframeView>& views,
+                            const DepthSensor& sensor);
 
 /// Finds where pictures of one map were taken in another one. What may be is said by the pose of
 /// the view, in the other map; what is, by verified() alone. Results are the same for any number of

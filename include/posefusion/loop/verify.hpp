@@ -95,6 +95,9 @@ class PlaceVerifier {
   explicit PlaceVerifier(const TrackingConfig& tracking, const VerifyLimits& limits = {})
       : tracking_(tracking), limits_(limits) {}
 
+  /// The frame against the map as it is seen from the pose.
+  PlaceAgreement compare(const SurfelMap& map, const WorkingFrame& frame, const MapPose& pose);
+
   PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame, const MapPose& candidate);
 
   /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best;
