@@ -48,7 +48,7 @@ TEST_F(MapToolTest, InfoTellsWhatIsInTheFile) {
   EXPECT_TRUE(hasSaid("camera       32 x 24, fx 26.00")) << said;
   EXPECT_TRUE(hasSaid("frames       10 with a pose, 10 fused")) << said;
   EXPECT_TRUE(hasSaid("surfels      4000 in")) << said;
-  EXPECT_TRUE(hasSaid("keyframes    2 in 1 fragments, 2 with images")) << said;
+  EXPECT_TRUE(hasSaid("keyframes    2 in 1 fragments, 0 retired, 2 with images")) << said;
   EXPECT_TRUE(hasSaid("constraints  2, of them 1 loops")) << said;
   EXPECT_TRUE(hasSaid("blobs        2, 3 bytes")) << said;
 }

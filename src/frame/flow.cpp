@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "posefusion/frame/picture_noise.hpp"
+
 namespace pf {
 namespace {
 
@@ -18,6 +20,11 @@ constexpr int kCellColumns = 6, kCellRows = 5;
 constexpr int kCornersPerCell = 4;
 constexpr double kCellQuality = 0.1;  // part of the cell's best corner's strength
 constexpr double kCornerSpacing_px = 7.0;
+// Of noise alone the strength of a corner (cv::cornerMinEigenVal over 3x3 pixels) is this times its
+// variance, and at the best places four times as much: noise is followed from frame to frame as
+// if nothing moved.
+constexpr int kCornerBlock = 3;
+constexpr double kNoiseStrength = 108.0 / (3060.0 * 3060.0), kMostOfNoise = 5.0;
 constexpr float kMaxReturnError_px = 0.7F;  // forth and back
 const cv::Size kWindow(13, 13);
 constexpr int kFlattened_px = 31;        // brightness counts against its mean over such a square
@@ -147,6 +154,10 @@ FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const
 
 void FlowTracker::findCorners() {
   std::vector<cv::Point2f> found;
+  const double noise = pictureNoise(grey_);
+  cv::cornerMinEigenVal(grey_, strength_, kCornerBlock);
+  strong_ = strength_ >= kMostOfNoise * kNoiseStrength * noise * noise;
+  cv::bitwise_and(free_, strong_, free_);
   const int wanted = kMaxCorners - static_cast<int>(corners_.size());
   if (wanted > 0) {
     cv::goodFeaturesToTrack(grey_, found, wanted, kCornerQuality, kCornerSpacing_px, free_);
@@ -163,7 +174,8 @@ void FlowTracker::findCorners() {
     const cv::Point from(i % kCellColumns * cell.width, i / kCellColumns * cell.height);
     const cv::Rect area = cv::Rect(from, cell) & cv::Rect(0, 0, grey_.cols, grey_.rows);
     if (taken[i] != 0 || area.empty()) continue;
-    cv::goodFeaturesToTrack(grey_(area), found, kCornersPerCell, kCellQuality, kCornerSpacing_px);
+    cv::goodFeaturesToTrack(grey_(area), found, kCornersPerCell, kCellQuality, kCornerSpacing_px,
+                            strong_(area));
     for (const cv::Point2f& p : found) corners_.emplace_back(p.x + from.x, p.y + from.y);
   }
   while (ids_.size() < corners_.size()) ids_.push_back(next_id_++);

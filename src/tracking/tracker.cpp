@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "noise_information.hpp"
 #include "place_errors.hpp"
 #include "posefusion/tracking/normal_equations.hpp"
 
@@ -58,9 +59,11 @@ struct ImageSystem {
   int free_directions = 0;
 };
 
-/// Leaves of the images' equations only what is more than noise; see kNormalNoise.
-ImageSystem withoutNoise(const NormalEquations& e, double share, const Prior& prior) {
-  const Matrix6d H = e.hessian();
+/// Leaves of the images' equations only what is more than noise; see kNormalNoise. `of_picture`:
+/// what the picture's noise has added to H.
+ImageSystem withoutNoise(const NormalEquations& e, double share, const Prior& prior,
+                         const Matrix6d& of_picture = Matrix6d::Zero()) {
+  const Matrix6d H = e.hessian() - of_picture;
   // The scene's distance: a turn moves it by this times the angle.
   const double lever_m = std::max(kMinLeverArm_m, std::sqrt(H.bottomRightCorner<3, 3>().trace() /
                                                             H.topLeftCorner<3, 3>().trace()));
@@ -245,7 +248,9 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
     share = static_cast<double>(1 << (2 * i)) / pixels_per_measurement;
     alignLevel(model.level(i), frame.levels[i], share, prior, config, a);
   }
-  const ImageSystem images = withoutNoise(a.equations, share, prior);
+  const Matrix6d of_picture =
+      noiseInformation(model.level(0), frame.levels[0], a.T_frame_view, a.settings);
+  const ImageSystem images = withoutNoise(a.equations, share, prior, of_picture);
   TrackingResult result = resultOf(a, images, prior, start.T_map_view);
   if (a.solvable && start.with_systematic) {
     addSystematic(placeErrors(model.level(0), frame.levels[0], a.T_frame_view, a.settings), images,

@@ -66,7 +66,7 @@ class FlowTracker {
   cv::Size frame_size_;
   bool comparable_ = false;
   std::int64_t newest_ns_ = 0;
-  cv::Mat small_, grey_, mean_, free_, coarse_before_, coarse_after_, hanning_;
+  cv::Mat small_, grey_, mean_, free_, strength_, strong_, coarse_before_, coarse_after_, hanning_;
   std::vector<cv::Point2f> there_, back_;
   std::vector<std::uint8_t> found_, returned_;
 };
