@@ -10,7 +10,7 @@ import subprocess
 import time
 
 from bench_report import Failed
-from bench_ros import rows_of, there_and_back
+from bench_ros import rows_of, there_and_back, turning
 from bench_runs import PROGRAMS, Runs, newest, note
 from bench_soak import resident_mb
 
@@ -34,8 +34,7 @@ def walked_truth(source, folder, frames):
         seen.append(min(truth[max(at - 1, 0)], truth[at], key=lambda t: abs(float(t[0]) - float(row[2]))))
     with open(folder / "groundtruth.txt", "w", encoding="ascii") as out:
         for i in range(frames):
-            at = i % (2 * len(seen) - 2)
-            row = seen[at if at < len(seen) else 2 * len(seen) - 2 - at]
+            row = seen[turning(i, len(seen))]
             out.write(" ".join([f"{START_S + i / RATE_HZ:.6f}", *row[1:]]) + "\n")
 
 

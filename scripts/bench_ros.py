@@ -94,6 +94,12 @@ def rows_of(path):
     return [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
 
 
+def turning(i, count):
+    """The number of the frame that comes i-th on a way of so many frames, walked there and back in turn."""
+    at = i % (2 * count - 2)
+    return at if at < count else 2 * count - 2 - at
+
+
 def there_and_back(source, folder, frames, rate_hz, start_s=1.0):
     """A TUM folder with the images of another, forwards and backwards in turn."""
     shutil.rmtree(folder, ignore_errors=True)
@@ -103,7 +109,6 @@ def there_and_back(source, folder, frames, rate_hz, start_s=1.0):
     lines = rows_of(source / "associations.txt")
     with open(folder / "associations.txt", "w", encoding="ascii") as out:
         for i in range(frames):
-            at = i % (2 * len(lines) - 2)
-            _, color, _, depth = lines[at if at < len(lines) else 2 * len(lines) - 2 - at]
+            _, color, _, depth = lines[turning(i, len(lines))]
             stamp = f"{start_s + i / rate_hz:.6f}"
             out.write(f"{stamp} {color} {stamp} {depth}\n")

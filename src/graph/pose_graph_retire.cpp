@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Keyframes that others stand for: a graph grows with the places that were seen, not with the time.
 #include <algorithm>
-#include <iterator>
-#include <utility>
 
 #include "posefusion/graph/pose_graph.hpp"
 
@@ -84,7 +82,7 @@ const PoseConstraint* PoseGraph::bestTie(int keyframe) const {
   const auto pose = [&](int i) { return keyframes_[static_cast<std::size_t>(i)].T_map_camera; };
   const PoseConstraint* best = nullptr;
   for (const PoseConstraint& c : constraints_) {
-    if (!endsAt(c, keyframe) || std::max(c.from, c.to) != keyframe) continue;
+    if (std::max(c.from, c.to) != keyframe) continue;
     const bool is_near = isWithin(pose(c.from).inverse() * pose(c.to), config_.keyframe_distance_m,
                                   config_.keyframe_angle_rad);
     const bool is_better = best == nullptr || c.covariance.trace() < best->covariance.trace();
@@ -118,9 +116,7 @@ void PoseGraph::retire(int keyframe, const PoseConstraint& tie) {
 
 std::optional<PoseConstraint> PoseGraph::inUse(PoseConstraint constraint) const {
   const auto at = [&](int i) -> const Keyframe& { return keyframes_[static_cast<std::size_t>(i)]; };
-  Matrix6d tie = Matrix6d::Zero();
-  tie.diagonal().head<3>().setConstant(config_.loop_sigma_m * config_.loop_sigma_m);
-  tie.diagonal().tail<3>().setConstant(config_.loop_sigma_rad * config_.loop_sigma_rad);
+  const Matrix6d tie = independentCovariance(config_.loop_sigma_m, config_.loop_sigma_rad);
   for (const int end : {constraint.from, constraint.to}) {
     const Keyframe& k = at(end);
     if (k.isRetired()) constraint = handedOn(constraint, k, at(k.follows), tie);
