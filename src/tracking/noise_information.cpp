@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "noise_information.hpp"
 
+#include "point_pair.hpp"
 #include "posefusion/frame/picture_noise.hpp"
 
 namespace pf {
 namespace {
 
-// Noise says the same everywhere: a seventh of the points, prime to the rows' lengths, is enough.
-constexpr std::size_t kEvery = 7;
-constexpr double kNear_m = 0.05;
 // A difference of two interpolated pixels, of the noise's variance, over all places between pixels.
 constexpr double kOfGradient = 4.0 / 3.0;
 
@@ -28,25 +26,17 @@ Matrix6d noiseInformation(const ModelPoints& model, const FrameLevel& frame,
   Matrix6d information = Matrix6d::Zero();
   if (settings.photometric_sigma <= 0) return information;
   const PinholeCamera& camera = frame.camera;
+  PointPair pair;
   for (std::size_t i = 0; i < model.count; i += kEvery) {
-    const Eigen::Vector3d q = T_frame_model * Eigen::Vector3d(model.x[i], model.y[i], model.z[i]);
-    if (q.z() < kNear_m) continue;
-    const Eigen::Vector2d at = camera.project(q);
-    const bool inside =
-        at.x() >= 0 && at.y() >= 0 && at.x() < camera.width - 1 && at.y() < camera.height - 1;
-    if (!inside) continue;
-    const int u = static_cast<int>(at.x() + 0.5), v = static_cast<int>(at.y() + 0.5);
-    const double depth = frame.depth_m.at<float>(v, u);
-    if (depth <= 0 || (q - camera.unproject(u, v, depth)).norm() > settings.max_distance_m)
-      continue;
+    if (!findPair(model, i, frame, T_frame_model, settings, pair)) continue;
     const Brightness& b = settings.brightness;
     const double residual =
-        frame.intensity.at<float>(v, u) - (b.gain * model.intensity[i] + b.offset);
+        frame.intensity.at<float>(pair.v, pair.u) - (b.gain * model.intensity[i] + b.offset);
     const double x = residual / (3 * settings.photometric_sigma);
     const double root = 1.0 / (1.0 + x * x);
     const double weight = root * root * static_cast<double>(model.weight[i]);
-    const Vector6d by_u = derivative(q, camera.fx / q.z(), 0);
-    const Vector6d by_v = derivative(q, 0, camera.fy / q.z());
+    const Vector6d by_u = derivative(pair.q, camera.fx / pair.q.z(), 0);
+    const Vector6d by_v = derivative(pair.q, 0, camera.fy / pair.q.z());
     information += weight * (by_u * by_u.transpose() + by_v * by_v.transpose());
   }
   const double noise = pictureNoise(frame.intensity) / settings.photometric_sigma;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "point_pair.hpp"
 #include "posefusion/calibration/depth_field.hpp"
 
 namespace pf {
@@ -11,9 +12,6 @@ namespace {
 
 // A calibration's nodes are as far apart as errors are known to go together.
 constexpr int kAcross = DepthField::kColumns, kDown = DepthField::kRows;
-// Points of one place say the same: a seventh of them, prime to the rows' lengths, is enough.
-constexpr std::size_t kEvery = 7;
-constexpr double kNear_m = 0.05;
 
 /// Standard deviation (m) of what does not average out within a place at distance z (m): the
 /// systematic error, and the rounding of a surface that lies within one step.
@@ -23,36 +21,25 @@ double placeSigma(const DepthSensor& sensor, double z_m) {
   return std::hypot(sensor.systematic_m, per_square * z_m * z_m);
 }
 
-/// A model point and the frame's pixel that it falls on.
-struct Pair {
-  Eigen::Vector3d q, normal, p;  ///< the model's point, moved; its normal; the frame's point
-  int u = 0, v = 0;
+/// A pair, and the model's normal in the camera frame.
+struct FacingPair : PointPair {
+  Eigen::Vector3d normal;
 };
 
 /// False where there is no pair within the gates.
 bool findPair(const ModelPoints& model, std::size_t i, const FrameLevel& frame,
-              const Eigen::Isometry3d& T, const TermSettings& settings, Pair& pair) {
-  pair.q = T * Eigen::Vector3d(model.x[i], model.y[i], model.z[i]);
-  if (pair.q.z() < kNear_m) return false;
-  const Eigen::Vector2d at = frame.camera.project(pair.q);
-  const bool inside = at.x() >= 0 && at.y() >= 0 && at.x() < frame.camera.width - 1 &&
-                      at.y() < frame.camera.height - 1;
-  if (!inside) return false;
-  pair.u = static_cast<int>(at.x() + 0.5);
-  pair.v = static_cast<int>(at.y() + 0.5);
-  const double depth = frame.depth_m.at<float>(pair.v, pair.u);
-  if (depth <= 0) return false;
-  pair.p = frame.camera.unproject(pair.u, pair.v, depth);
+              const Eigen::Isometry3d& T, const TermSettings& settings, FacingPair& pair) {
+  PointPair& points = pair;
+  if (!findPair(model, i, frame, T, settings, points)) return false;
   pair.normal = T.linear() * Eigen::Vector3d(model.nx[i], model.ny[i], model.nz[i]);
   const Eigen::Vector3d seen(frame.normal_x.at<float>(pair.v, pair.u),
                              frame.normal_y.at<float>(pair.v, pair.u),
                              frame.normal_z.at<float>(pair.v, pair.u));
-  return (pair.q - pair.p).norm() < settings.max_distance_m &&
-         pair.normal.dot(seen) > settings.min_normal_cosine;
+  return pair.normal.dot(seen) > settings.min_normal_cosine;
 }
 
 /// w J' times what the residual is off by where the place is off by one standard deviation.
-Vector6d pullOf(const Pair& pair, float point_weight, const TermSettings& settings) {
+Vector6d pullOf(const FacingPair& pair, float point_weight, const TermSettings& settings) {
   const auto depth = static_cast<float>(pair.p.z());
   const double sigma = settings.sensor.sigma(depth);
   const double x = pair.normal.dot(pair.q - pair.p) / (sigma * settings.robust_scale);
@@ -73,7 +60,7 @@ PlaceErrors placeErrors(const ModelPoints& model, const FrameLevel& frame,
   PlaceErrors errors;
   int pairs = 0;
   double inverse_distances = 0;
-  Pair pair;
+  FacingPair pair;
   for (std::size_t i = 0; i < model.count; i += kEvery) {
     if (!findPair(model, i, frame, T_frame_model, settings, pair)) continue;
     const int place =
