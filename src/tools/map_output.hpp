@@ -14,7 +14,7 @@ namespace pf {
 void requireNew(const std::string& output);
 
 /// Writes what a mapper has into the new map file `output`, which is there when it is whole.
-/// `settings`: that the file tells of. Throws InputError naming what cannot be written.
+/// `settings`: saved in the file. Throws InputError naming what cannot be written.
 void writeMap(const Mapper& mapper, const PinholeCamera& camera, const Config& settings,
               const std::string& output);
 

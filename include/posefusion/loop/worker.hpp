@@ -41,7 +41,7 @@ struct LoopQuestion {
   /// empty.
   std::vector<MapPose> corrected;
   std::shared_ptr<const PlaceQuestion> place;
-  /// Set, by another thread, once nobody wants to know the place any more; nullptr: always wanted.
+  /// Set by the asking thread once the camera is located again: relocalisation is then skipped.
   std::shared_ptr<const std::atomic<bool>> place_is_void{};
   /// Of the keyframe; else it is only told.
   bool seeks_loops = true;

@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// Where the camera may be while nobody knows.
+/// A pose by dead reckoning, for a camera that is not located.
 struct ProvisionalPose {
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< in the first fragment
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
