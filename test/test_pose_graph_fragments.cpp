@@ -63,5 +63,71 @@ TEST(PoseGraphFragments, ADoubtfulSecondJoinIsRefusedAndUndone) {
   expectUnchanged(graph, before);
 }
 
+/// The corridor and, later, pieces of its way back each in coordinates of its own, reckoned from
+/// keyframe 29.
+PoseGraph reckonedPieces(const Poses& truth, const std::vector<int>& firsts) {
+  PoseGraph graph = graphOf(Poses(truth.begin(), truth.begin() + 30));
+  for (std::size_t i = 0; i < firsts.size(); ++i) {
+    const auto at = static_cast<std::size_t>(firsts[i]);
+    PoseConstraint reckoned = loopOf(truth, 29, firsts[i]);
+    reckoned.covariance = independentCovariance(0.1, 0.05);
+    const Eigen::Isometry3d away = motion(50, 3, -20, 1.2 * static_cast<double>(i));
+    const int fragment = static_cast<int>(i) + 1;
+    const int id = graph.addFragment(
+        keyframeAt(away * truth[at], graph.keyframes().size(), fragment), reckoned);
+    graph.addKeyframe(keyframeAt(away * truth[at + 1], graph.keyframes().size(), fragment), id,
+                      kTracking);
+  }
+  return graph;
+}
+
+/// As it would be were the end of the loop in keyframe `is` of the graph.
+PoseConstraint between(PoseConstraint loop, int from, int to) {
+  loop.from = from;
+  loop.to = to;
+  return loop;
+}
+
+TEST(PoseGraphFragments, DeadReckoningRefusesTheOtherOfTwoAlikePlaces) {
+  const Poses truth = corridor();
+  PoseGraph graph = reckonedPieces(truth, {50});
+  const PoseGraph before = graph;
+  const GraphResult alike = graph.joinFragment(between(loopOf(truth, 9, 50), 20, 30));
+  EXPECT_FALSE(alike.accepted);
+  ASSERT_EQ(alike.refused.size(), 1U);
+  EXPECT_NE(alike.reason.find("dead reckoning"), std::string::npos) << alike.reason;
+  expectUnchanged(graph, before);
+  ASSERT_EQ(graph.keptConstraints().size(), graph.constraints().size() + 1);
+  ASSERT_TRUE(graph.joinFragment(between(loopOf(truth, 9, 50), 9, 30)).accepted);
+  EXPECT_LT(distance(graph.keyframes()[30].T_map_camera, truth[50]), 1e-6);
+  EXPECT_EQ(graph.keptConstraints().size(), graph.constraints().size()) << "its place is known";
+}
+
+TEST(PoseGraphFragments, TwoOfUnknownPlaceAreReckonedByWayOfWhatBothCameFrom) {
+  const Poses truth = corridor();
+  PoseGraph graph = reckonedPieces(truth, {35, 50});
+  PoseConstraint wrong = between(loopOf(truth, 35, 50), 30, 32);
+  wrong.T_from_to = motion(0, 0, 3, 0) * wrong.T_from_to;
+  EXPECT_FALSE(graph.joinFragment(wrong).accepted);
+  ASSERT_TRUE(graph.joinFragment(between(loopOf(truth, 35, 50), 30, 32)).accepted);
+  for (int i = 30; i < 34; ++i) {
+    EXPECT_EQ(graph.keyframes()[static_cast<std::size_t>(i)].fragment, 1);
+  }
+  EXPECT_EQ(graph.keptConstraints().size(), graph.constraints().size() + 2) << "of both";
+}
+
+TEST(PoseGraphFragments, ReckoningIsKeptAcrossFilesAndHandOvers) {
+  const Poses truth = corridor();
+  PoseGraph graph = reckonedPieces(truth, {50});
+  PoseGraph copy = graph.handOver();
+  graph.addFragment(keyframeAt(truth[40], 32, 2), between(loopOf(truth, 29, 40), 29, 32));
+  graph.takeUp(copy, {});
+  EXPECT_EQ(graph.keptConstraints().size(), graph.constraints().size() + 2);
+  PoseGraph again(graph.config(), graph.keyframes(), graph.keptConstraints(), graph.version());
+  EXPECT_EQ(again.constraints().size(), graph.constraints().size());
+  EXPECT_FALSE(again.joinFragment(between(loopOf(truth, 9, 50), 20, 30)).accepted);
+  EXPECT_TRUE(again.joinFragment(between(loopOf(truth, 9, 50), 9, 30)).accepted);
+}
+
 }  // namespace
 }  // namespace pf

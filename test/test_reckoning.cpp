@@ -23,7 +23,7 @@ Eigen::Isometry3d ahead(double metres, double yaw = 0) {
 
 TEST(Reckoning, ThereIsNoneBeforeTheCameraWasKnown) {
   Reckoning reckoning;
-  reckoning.move(ahead(1), kStep);
+  reckoning.move(ahead(1), kStep, 0.1);
   reckoning.pass(1);
   EXPECT_FALSE(reckoning.pose());
   reckoning.know(ahead(2), kStep);
@@ -39,7 +39,7 @@ TEST(Reckoning, GoesOnByItsSteps) {
   Eigen::Isometry3d T = ahead(2);
   double before_m = 0;
   for (int i = 0; i < 200; ++i) {
-    reckoning.move(ahead(0.01, 0.01), kStep);
+    reckoning.move(ahead(0.01, 0.01), kStep, 0.1);
     T = T * ahead(0.01, 0.01);
     EXPECT_GT(sigmaM(*reckoning.pose()), before_m);
     before_m = sigmaM(*reckoning.pose());
@@ -57,7 +57,7 @@ TEST(Reckoning, WhileNothingTellsTheErrorGrowsWithTheTimeAndStays) {
   once.pass(1);
   EXPECT_NEAR(sigmaM(*often.pose()), sigmaM(*once.pose()), 1e-9) << "whatever the rate";
   EXPECT_GT(sigmaM(*once.pose()), 0.5);
-  once.move(ahead(0.01), kStep);
+  once.move(ahead(0.01), kStep, 0.1);
   EXPECT_GT(sigmaM(*once.pose()), 0.5) << "what happened meanwhile is not told afterwards";
   for (int i = 0; i < 100; ++i) once.pass(1);
   EXPECT_LT(std::sqrt(once.pose()->covariance(3, 3)), M_PI) << "no more than all around";
@@ -66,7 +66,7 @@ TEST(Reckoning, WhileNothingTellsTheErrorGrowsWithTheTimeAndStays) {
 TEST(Reckoning, FollowsCorrectionsOfTheMap) {
   Reckoning reckoning;
   reckoning.know(ahead(2), kStep);
-  reckoning.move(ahead(1), kStep);
+  reckoning.move(ahead(1), kStep, 0.1);
   const Matrix6d before = reckoning.pose()->covariance;
   reckoning.correct(ahead(-0.5, 0.2));
   EXPECT_TRUE(reckoning.pose()->T_map_camera.isApprox(ahead(-0.5, 0.2) * ahead(3), 1e-9));
@@ -87,7 +87,7 @@ TEST(Reckoning, TheCovarianceCoversErrorsOfTheSteps) {
       for (int k = 0; k < 6; ++k) error[k] = (k < 3 ? 0.002 : 0.001) * normal(random);
       const Eigen::Isometry3d step = ahead(0.01, 0.02);
       T = T * step;
-      reckoning.move(step * expSe3(error), kStep);
+      reckoning.move(step * expSe3(error), kStep, 0.1);
     }
     const ProvisionalPose pose = *reckoning.pose();
     const Vector6d off = logSe3(T.inverse() * pose.T_map_camera);

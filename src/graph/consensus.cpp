@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/graph/drift.hpp"
 
 namespace pf {
 namespace {
@@ -17,42 +18,6 @@ constexpr int kApart = 1;
 
 using Places = std::vector<std::size_t>;  // of loops in their list
 
-/// How many steps lie between keyframes, by the shortest way that constraints lead.
-class Ways {
- public:
-  Ways(std::size_t keyframes, const std::vector<PoseConstraint>& constraints) : next_(keyframes) {
-    for (const PoseConstraint& c : constraints) {
-      next_[static_cast<std::size_t>(c.from)].push_back(c.to);
-      next_[static_cast<std::size_t>(c.to)].push_back(c.from);
-    }
-  }
-
-  /// Asked for before stepsBetween() may be, which any thread may.
-  void findFrom(int keyframe) {
-    const auto [found, is_new] = steps_.try_emplace(keyframe);
-    if (!is_new) return;
-    std::vector<int>& steps = found->second;
-    steps.assign(next_.size(), static_cast<int>(next_.size()));  // no way is as long
-    steps[static_cast<std::size_t>(keyframe)] = 0;
-    std::vector<int> order = {keyframe};
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const int so_far = steps[static_cast<std::size_t>(order[i])];
-      for (const int other : next_[static_cast<std::size_t>(order[i])]) {
-        int& there = steps[static_cast<std::size_t>(other)];
-        if (there <= so_far + 1) continue;
-        there = so_far + 1;
-        order.push_back(other);
-      }
-    }
-  }
-
-  int stepsBetween(int from, int to) const { return steps_.at(from)[static_cast<std::size_t>(to)]; }
-
- private:
-  std::vector<std::vector<int>> next_;
-  std::map<int, std::vector<int>> steps_;
-};
-
 class Consistency {
  public:
   Consistency(const GraphConfig& config, const std::vector<Keyframe>& keyframes,
@@ -61,13 +26,11 @@ class Consistency {
       : config_(config),
         keyframes_(keyframes),
         loops_(loops),
-        step_(independentCovariance(config.odometry_sigma_m, config.odometry_sigma_rad)),
         floor_(independentCovariance(config.loop_sigma_m, config.loop_sigma_rad)),
-        ways_(keyframes.size(), constraints),
         agree_(loops.size(), std::vector<char>(loops.size(), 0)) {
     for (const PoseConstraint& loop : loops) {
-      ways_.findFrom(loop.from);
-      ways_.findFrom(loop.to);
+      for (const int end : {loop.from, loop.to})
+        steps_.try_emplace(end, stepsFrom(end, keyframes.size(), constraints));
     }
     parallelFor(loops.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -117,7 +80,10 @@ class Consistency {
                      config_.keyframe_angle_rad);
   }
 
-  Matrix6d wayCovariance(int from, int to) const { return ways_.stepsBetween(from, to) * step_; }
+  Matrix6d wayCovariance(int from, int to) const {
+    const int steps = steps_.at(from)[static_cast<std::size_t>(to)];
+    return driftCovariance(config_, steps, (pose(from).inverse() * pose(to)).translation().norm());
+  }
 
   /// From camera a.from along its piece to b.from, over to b.to, and along that piece to a.to: is
   /// that where loop a leads?
@@ -137,8 +103,8 @@ class Consistency {
   const GraphConfig& config_;
   const std::vector<Keyframe>& keyframes_;
   const std::vector<PoseConstraint>& loops_;
-  Matrix6d step_, floor_;
-  Ways ways_;
+  Matrix6d floor_;
+  std::map<int, std::vector<int>> steps_;  ///< from the ends of loops to all keyframes
   std::vector<std::vector<char>> agree_;
 };
 

@@ -26,6 +26,11 @@ PoseGraph::PoseGraph(const GraphConfig& config, std::vector<Keyframe> keyframes,
       constraints_(std::move(constraints)),
       version_(version) {
   checkGraph(keyframes_, constraints_, version_);
+  const auto isReckoned = [](const auto& c) { return c.kind == ConstraintKind::reckoned; };
+  const auto first = std::stable_partition(constraints_.begin(), constraints_.end(),
+                                           [&](const auto& c) { return !isReckoned(c); });
+  reckoned_.assign(first, constraints_.end());
+  constraints_.erase(first, constraints_.end());
 }
 
 int PoseGraph::addKeyframe(Keyframe keyframe) {
@@ -52,6 +57,22 @@ int PoseGraph::addKeyframe(Keyframe keyframe, int from, const Matrix6d& covarian
   return keyframe.id;
 }
 
+int PoseGraph::addFragment(Keyframe first, PoseConstraint reckoned) {
+  reckoned.kind = ConstraintKind::reckoned;
+  reckoned.to = static_cast<int>(keyframes_.size());
+  throwUnlessBetween(reckoned, keyframes_.size() + 1);
+  throwUnlessUsable(reckoned);
+  const int id = addKeyframe(first);
+  reckoned_.push_back(reckoned);
+  return id;
+}
+
+std::vector<PoseConstraint> PoseGraph::keptConstraints() const {
+  std::vector<PoseConstraint> kept = constraints_;
+  kept.insert(kept.end(), reckoned_.begin(), reckoned_.end());
+  return kept;
+}
+
 void PoseGraph::addLoop(const PoseConstraint& loop) {
   const PoseConstraint checked = checkedLoop(loop);
   if (fragmentOf(loop.from) != fragmentOf(loop.to)) {
@@ -67,25 +88,6 @@ PoseConstraint PoseGraph::checkedLoop(const PoseConstraint& loop) const {
   checked.covariance = withFloor(loop.covariance, config_.loop_sigma_m, config_.loop_sigma_rad);
   throwUnlessUsable(checked);
   return checked;
-}
-
-GraphResult PoseGraph::joinFragment(const PoseConstraint& loop) {
-  const PoseConstraint checked = checkedLoop(loop);
-  const int from = fragmentOf(loop.from), to = fragmentOf(loop.to);
-  if (from == to) throw std::invalid_argument("both keyframes are of one fragment");
-  const auto pose = [&](int i) { return keyframes_[static_cast<std::size_t>(i)].T_map_camera; };
-  const Eigen::Isometry3d wanted_to = pose(loop.from) * loop.T_from_to;
-  const Eigen::Isometry3d wanted_from = pose(loop.to) * loop.T_from_to.inverse();
-  const int stays = std::min(from, to), moves = std::max(from, to);
-  const Eigen::Isometry3d step =
-      moves == to ? wanted_to * pose(loop.to).inverse() : wanted_from * pose(loop.from).inverse();
-  std::vector<Keyframe> start = keyframes_;
-  for (Keyframe& k : start) {
-    if (k.fragment != moves) continue;
-    k.fragment = stays;
-    k.T_map_camera = orthonormalised(step * k.T_map_camera);
-  }
-  return prove(start, {checked});
 }
 
 }  // namespace pf

@@ -76,6 +76,10 @@ std::vector<Deformation> PoseGraph::takeUp(PoseGraph corrected,
   for (const PoseConstraint& waits : waiting_) {
     if (const auto c = corrected.inUse(waits)) corrected.waiting_.push_back(*c);
   }
+  for (const PoseConstraint& added : reckoned_) {
+    if (added.to < static_cast<int>(known)) continue;
+    if (const auto c = corrected.inUse(added)) corrected.reckoned_.push_back(*c);
+  }
   *this = std::move(corrected);
   return followed;
 }

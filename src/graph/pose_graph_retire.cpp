@@ -17,7 +17,8 @@ PoseConstraint handedOn(const PoseConstraint& c, const Keyframe& retired, const 
                         const Matrix6d& tie) {
   const Eigen::Isometry3d T_carrier_retired = carrier.T_map_camera.inverse() * retired.T_map_camera;
   PoseConstraint on = c;
-  on.kind = ConstraintKind::loop;  // more than one measurement: no step of tracking any more
+  // More than one measurement: no step of tracking any more.
+  if (c.kind == ConstraintKind::odometry) on.kind = ConstraintKind::loop;
   if (c.from == retired.id) {
     const Matrix6d A = adjoint(c.T_from_to.inverse());
     on.from = carrier.id;
@@ -102,6 +103,9 @@ void PoseGraph::retire(int keyframe, const PoseConstraint& tie) {
   }
   for (Keyframe& follower : keyframes_) {
     if (follower.follows == keyframe) follower.follows = carrier.id;
+  }
+  for (PoseConstraint& c : reckoned_) {
+    if (c.from == keyframe) c = handedOn(c, k, carrier, covariance);
   }
   for (std::vector<PoseConstraint>* list : {&constraints_, &waiting_, &doubted_}) {
     const auto first = std::stable_partition(list->begin(), list->end(),

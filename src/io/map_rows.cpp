@@ -12,6 +12,8 @@
 namespace pf {
 namespace {
 
+constexpr auto kLastKind = static_cast<std::int64_t>(ConstraintKind::reckoned);
+
 int narrow(std::int64_t value, const char* name) {
   if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
     throw InputError(std::string(name) + " is " + std::to_string(value));
@@ -65,7 +67,12 @@ Keyframe keyframeAt(const SqliteStatement& row) {
 
 PoseConstraint constraintAt(const SqliteStatement& row) {
   PoseConstraint c;
-  c.kind = row.integer(0) == 0 ? ConstraintKind::odometry : ConstraintKind::loop;
+  const std::int64_t kind = row.integer(0);
+  if (kind < 0 || kind > kLastKind) {
+    throw InputError("a constraint is of kind " + std::to_string(kind) + ", expected 0 to " +
+                     std::to_string(kLastKind));
+  }
+  c.kind = static_cast<ConstraintKind>(kind);
   c.from = narrow(row.integer(1), "the keyframe of a constraint");
   c.to = narrow(row.integer(2), "the keyframe of a constraint");
   c.T_from_to = decodeTransform(row.blob(3));

@@ -129,7 +129,7 @@ void writeConstraints(const SqliteDatabase& database, const MapUpdate& update,
   writeChanged(update.constraints, written, [&](std::int64_t id, const PoseConstraint& c) {
     const std::string motion = encode(c.T_from_to), covariance = encode(c.covariance);
     row.bind(1, id);
-    row.bind(2, std::int64_t{c.kind == ConstraintKind::loop ? 1 : 0});
+    row.bind(2, static_cast<std::int64_t>(c.kind));
     row.bind(3, std::int64_t{c.from});
     row.bind(4, std::int64_t{c.to});
     row.bind(5, motion);

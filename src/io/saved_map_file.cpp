@@ -182,7 +182,7 @@ MapUpdate MapRecording::changes(const Mapper& mapper) const {
   update.frame = mapper.map().frame();
   update.graph_version = graph.version();
   update.keyframes = graph.keyframes();
-  update.constraints = graph.constraints();
+  update.constraints = graph.keptConstraints();
   update.frames.assign(frames.begin() + static_cast<std::ptrdiff_t>(written_.frames), frames.end());
   for (const KeyframeView& view : mapper.keyframeViews()) {
     const bool is_known = view.id < written_.keyframes;

@@ -142,7 +142,7 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   // Features tell soonest, where they tell; drawing the map finds the rest.
   std::vector<PlaceCandidate> like;
   for (const MapPose& pose : closer_.placesLike(keyframeView(question.frame, 0, {}, true))) {
-    like.emplace_back().pose = pose;
+    if (question.admits(pose)) like.emplace_back().pose = pose;
   }
   const PlaceVerdict soon = verifier_.verifyBest(*question.map, question.frame, like, kVerified);
   if (!like.empty() && soon.accepted()) return soon;
@@ -169,7 +169,8 @@ std::vector<PlaceCandidate> LoopWorker::searchAll(const PlaceQuestion& question,
     const Searched& in = searched(question, around);
     if (in.points.size() == 0) continue;
     const auto more = searchPlaces(in.points, query, around, in.up, {});
-    candidates.insert(candidates.end(), more.begin(), more.end());
+    std::copy_if(more.begin(), more.end(), std::back_inserter(candidates),
+                 [&](const PlaceCandidate& c) { return question.admits(c.pose); });
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });

@@ -32,7 +32,10 @@ int BackEnd::add(const FusedFrame& frame) {
   keyframe.T_map_camera = frame.pose.T_map_camera;
   keyframe.fragment = frame.pose.fragment;
   const int near = nearest(frame.pose);
-  if (near < 0) return graph_.addKeyframe(keyframe);
+  if (near < 0) {
+    const auto reckoned = frame.reckoned ? reckonedFrom(*frame.reckoned) : std::nullopt;
+    return reckoned ? graph_.addFragment(keyframe, *reckoned) : graph_.addKeyframe(keyframe);
+  }
   const Keyframe last = graph_.keyframes().back();
   const bool is_same_fragment = last.fragment == keyframe.fragment;
   if (frame.is_return || !is_same_fragment) {
@@ -47,6 +50,20 @@ int BackEnd::add(const FusedFrame& frame) {
   const GraphConfig& config = graph_.config();
   if (isWithin(step, config.keyframe_distance_m, config.keyframe_angle_rad)) return -1;
   return graph_.addKeyframe(keyframe, last.id, frame.covariance);
+}
+
+std::optional<PoseConstraint> BackEnd::reckonedFrom(const ProvisionalPose& pose) const {
+  const auto& keyframes = graph_.keyframes();
+  const auto last = std::find_if(keyframes.rbegin(), keyframes.rend(), [](const Keyframe& k) {
+    return k.fragment == kFirstFragment && !k.isRetired();
+  });
+  if (last == keyframes.rend()) return std::nullopt;
+  PoseConstraint reckoned;
+  reckoned.kind = ConstraintKind::reckoned;
+  reckoned.from = last->id;
+  reckoned.T_from_to = last->T_map_camera.inverse() * pose.T_map_camera;
+  reckoned.covariance = pose.covariance;
+  return reckoned;
 }
 
 void BackEnd::record(std::int64_t stamp_ns, const MapPose& pose) {

@@ -31,14 +31,17 @@ std::optional<MapPose> Mapper::State::trackedPose() const {
 /// `before`: trackedPose() before the frame.
 void Mapper::State::reckon(const Location& location, const std::optional<MapPose>& before,
                            std::int64_t before_ns) {
+  const double elapsed_s =
+      before_ns == kBeforeAll ? 0 : 1e-9 * static_cast<double>(last_stamp_ns - before_ns);
   if (location.located && isPlaceKnown()) {
     reckoning.know(location.T_map_camera, location.tracking.covariance);
   } else if (location.located && before && before->fragment == location.fragment) {
-    reckoning.move(before->T_map_camera.inverse() * location.T_map_camera, location.covariance);
+    reckoning.move(before->T_map_camera.inverse() * location.T_map_camera, location.covariance,
+                   elapsed_s);
   } else if (location.motion.found) {
-    reckoning.move(location.motion.T_before_after, location.motion.covariance);
-  } else if (before_ns != kBeforeAll) {
-    reckoning.pass(1e-9 * static_cast<double>(last_stamp_ns - before_ns));
+    reckoning.move(location.motion.T_before_after, location.motion.covariance, elapsed_s);
+  } else {
+    reckoning.pass(elapsed_s);
   }
 }
 

@@ -34,6 +34,7 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
   fused.covariance = location.tracking.covariance;
   fused.is_return = location.is_return;
   fused.carried = location.carried;
+  if (!isPlaceKnown()) fused.reckoned = reckoning.pose();
   const int id = back_end.add(fused);
   if (id < 0) return;
   if (config.loop.enabled) {
@@ -92,6 +93,10 @@ void Mapper::State::askForPlace() {
   tellCloser();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
   if (const auto reckoned = reckonedPlace()) place.elsewhere.push_back(*reckoned);
+  if (const auto pose = reckoning.pose()) {
+    const auto reckoned = back_end.reckonedFrom(*pose);
+    if (reckoned) place.expected = std::make_shared<ExpectedPlace>(back_end.graph(), *reckoned);
+  }
   for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
     place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
   }

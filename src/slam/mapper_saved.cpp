@@ -74,7 +74,7 @@ SavedMap Mapper::saved(const PinholeCamera& camera) const {
   saved.frame = s.map.frame();
   saved.T_world_map = s.T_world_map;
   saved.keyframes = graph.keyframes();
-  saved.constraints = graph.constraints();
+  saved.constraints = graph.keptConstraints();
   saved.graph_version = graph.version();
   saved.frames = s.back_end.frames();
   saved.views = s.views;

@@ -23,11 +23,15 @@ struct Constraints {
 /// A keyframe follows the one before; that of a camera that came back hangs on the one nearest to
 /// it.
 std::vector<Constraints> byOrigin(const std::vector<PoseConstraint>& constraints) {
-  std::vector<Constraints> kinds = {{"steps", {}}, {"returns", {}}, {"loops", {}}};
+  std::vector<Constraints> kinds = {
+      {"steps", {}}, {"returns", {}}, {"loops", {}}, {"reckoned", {}}};
   for (const PoseConstraint& c : constraints) {
-    const bool is_loop = c.kind == ConstraintKind::loop;
-    const std::size_t kind = is_loop ? 2 : (c.to == c.from + 1 ? 0 : 1);
-    kinds[kind].all.push_back(c);
+    const auto kind = [&]() -> std::size_t {
+      if (c.kind == ConstraintKind::reckoned) return 3;
+      if (c.kind == ConstraintKind::loop) return 2;
+      return c.to == c.from + 1 ? 0 : 1;
+    };
+    kinds[kind()].all.push_back(c);
   }
   return kinds;
 }

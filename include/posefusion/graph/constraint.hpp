@@ -5,7 +5,12 @@
 
 namespace pf {
 
-enum class ConstraintKind { odometry, loop };
+/// The numbers stand in map files.
+enum class ConstraintKind {
+  odometry,  ///< a step of tracking
+  loop,
+  reckoned  ///< where dead reckoning puts a fragment whose place is not known
+};
 
 /// What is measured of two keyframes: T_from_to times a small motion, whose twist is normally
 /// distributed.

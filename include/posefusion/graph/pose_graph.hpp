@@ -60,6 +60,10 @@ class PoseGraph {
   /// is that of tracking over the step (twist in the new camera); drift is added to it.
   int addKeyframe(Keyframe keyframe, int from, const Matrix6d& covariance);
 
+  /// Adds the first keyframe of a fragment, which dead reckoning leads to from a keyframe whose
+  /// place is known (`to` is not looked at): loops to where it cannot be do not join it.
+  int addFragment(Keyframe first, PoseConstraint reckoned);
+
   /// A loop between keyframes of one fragment, for the next optimise(); the error that any loop has
   /// is added to its covariance. Throws std::invalid_argument for unknown or equal keyframes, other
   /// fragments, or numbers that are not finite.
@@ -75,7 +79,8 @@ class PoseGraph {
 
   /// Two fragments by a loop between them: the later moves rigidly to where the loop wants it, in
   /// the other's coordinates, and takes the other's number, then all is optimised. Refused like any
-  /// loop: nothing changes then. Throws like addLoop(), and when both are of one fragment.
+  /// loop, and where dead reckoning does not admit it (see ExpectedPlace): nothing changes then.
+  /// Throws like addLoop(), and when both are of one fragment.
   GraphResult joinFragment(const PoseConstraint& loop);
 
   /// Loops between any keyframes, and those that wait: fragments that they lead between are joined.
@@ -123,9 +128,11 @@ class PoseGraph {
 
   Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }
 
-  /// All that must be kept to go on later.
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<PoseConstraint>& constraints() const { return constraints_; }  ///< that hold
+  /// With the keyframes all that must be kept to go on later: constraints(), and where fragments
+  /// are by dead reckoning.
+  std::vector<PoseConstraint> keptConstraints() const;
   /// Loops that contradict what holds, the last of them: kept, as they may be right.
   const std::vector<PoseConstraint>& doubted() const { return doubted_; }
   int version() const { return version_; }  ///< number of accepted corrections
@@ -138,6 +145,8 @@ class PoseGraph {
     return keyframes_.at(static_cast<std::size_t>(keyframe)).fragment;
   }
   PoseConstraint checkedLoop(const PoseConstraint& loop) const;
+  std::optional<PoseConstraint> reckonedTo(int fragment, int in) const;
+  std::string unexpected(const PoseConstraint& loop, const std::vector<Keyframe>& joined) const;
   Attempt attempt(const std::vector<Keyframe>& from,
                   const std::vector<PoseConstraint>& loops) const;
   Attempt attemptAll() const;
@@ -168,7 +177,8 @@ class PoseGraph {
   GraphConfig config_;
   std::vector<Keyframe> keyframes_;
   std::vector<PoseConstraint> constraints_, waiting_, doubted_;
-  std::size_t handed_over_ = 0;  ///< constraints when this was copied by handOver()
+  std::vector<PoseConstraint> reckoned_;  ///< to the first keyframes of fragments
+  std::size_t handed_over_ = 0;           ///< constraints when this was copied by handOver()
   int version_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/calibration/field_learner.hpp"
 #include "posefusion/graph/constraint.hpp"
+#include "posefusion/graph/expected_place.hpp"
 #include "posefusion/loop/closer.hpp"
 #include "posefusion/loop/map_points.hpp"
 
@@ -24,6 +25,10 @@ struct PlaceQuestion {
   MapPose last{};                        ///< before the loss
   /// Further poses around which to look, in a map that was loaded.
   std::vector<MapPose> elsewhere{};
+  /// Where the camera can be at all; nothing: anywhere.
+  std::shared_ptr<const ExpectedPlace> expected{};
+
+  bool admits(const MapPose& place) const { return !expected || expected->admits(place); }
 };
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.

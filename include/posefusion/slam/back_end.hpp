@@ -11,6 +11,7 @@
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/graph/pose_graph.hpp"
 #include "posefusion/loop/closer.hpp"
+#include "posefusion/slam/reckoning.hpp"
 #include "posefusion/tracking/tracker.hpp"
 
 namespace pf {
@@ -24,6 +25,8 @@ struct FusedFrame {
   bool is_return = false;  ///< found again: tied to the nearest keyframe, not to the last
   /// Of a return, where it is measured: the pose had the camera not been lost but carried on.
   PosePrior carried;
+  /// Where the place of its fragment is not known: its pose by dead reckoning, in the first.
+  std::optional<ProvisionalPose> reckoned;
 };
 
 /// The keyframes, the graph that ties them, and the poses that hang on them. A frame's pose is kept
@@ -49,6 +52,10 @@ class BackEnd {
   /// having returned there, it closes a loop by the way that it came, which waits for the next
   /// close().
   int add(const FusedFrame& frame);
+
+  /// A pose by dead reckoning as one on from the last keyframe in use of the first fragment.
+  /// Nothing where there is none.
+  std::optional<PoseConstraint> reckonedFrom(const ProvisionalPose& pose) const;
 
   /// Keeps the pose of a located frame (fused or not), by the last keyframe of its fragment;
   /// nothing before the first.

@@ -14,17 +14,17 @@ struct ProvisionalPose {
 };
 
 /// Dead reckoning from the last known pose in the first fragment of the map on: by corners, by
-/// tracking in a fragment whose place is not known, or by nothing but how fast a robot moves. Three
+/// tracking in a fragment whose place is not known, or by nothing but how fast a robot moves. Four
 /// errors add up: those of the single steps; what is systematic in them, which grows with the way;
-/// and what may have happened while nothing told of the motion, which grows with the time. Not
-/// thread safe.
+/// what may have happened while nothing told of the motion; and what no step shows (a lift, a
+/// trolley), both of which grow with the time. Not thread safe.
 class Reckoning {
  public:
   /// The camera is there.
   void know(const Eigen::Isometry3d& T_map_camera, const Matrix6d& covariance);
 
-  /// It has moved on. `covariance`: of the step's twist, in the camera frame after it.
-  void move(const Eigen::Isometry3d& T_before_after, const Matrix6d& covariance);
+  /// It has moved on, in so long. `covariance`: of the step's twist, in the camera frame after it.
+  void move(const Eigen::Isometry3d& T_before_after, const Matrix6d& covariance, double elapsed_s);
 
   /// Nothing tells how it has moved in so long.
   void pass(double elapsed_s);
@@ -43,6 +43,7 @@ class Reckoning {
   Matrix6d steps_ = Matrix6d::Zero();  ///< covariance of the single steps, and of past gaps
   double way_m_ = 0, turn_rad_ = 0;    ///< since it was known
   double blind_s_ = 0;                 ///< since anything told of the motion
+  double elapsed_s_ = 0;               ///< since it was known
 };
 
 }  // namespace pf

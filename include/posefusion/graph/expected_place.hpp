@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "posefusion/core/map_pose.hpp"
+#include "posefusion/graph/pose_graph.hpp"
+
+namespace pf {
+
+/// Where dead reckoning lets a camera be, for places that look like where it is: rooms look alike.
+/// What speaks for a place is not asked here, only whether the camera can have come there. Beside
+/// the reckoning's own covariance that takes three errors: of the pose that it began at, the last
+/// before a loss; of the map, which has drifted between the keyframe of the beginning and the one
+/// at the place; and of the place itself. Immutable: for any thread.
+class ExpectedPlace {
+ public:
+  /// `reckoned` leads from a keyframe to the camera, which need not be a keyframe (`to` is not
+  /// looked at).
+  ExpectedPlace(const PoseGraph& graph, const PoseConstraint& reckoned);
+
+  /// Squared Mahalanobis distance of a found place from the expected one: chi-square with 6 degrees
+  /// of freedom where the camera is there. 0 in another fragment than that of the keyframe, where
+  /// nothing is known of the way.
+  double chiSquare(const MapPose& found) const;
+
+  bool admits(const MapPose& found) const { return chiSquare(found) <= config_.max_chi_square; }
+
+ private:
+  GraphConfig config_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<int> steps_;  ///< from the keyframe of the beginning to each
+  MapPose expected_;
+  Matrix6d covariance_;
+};
+
+}  // namespace pf
