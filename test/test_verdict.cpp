@@ -17,7 +17,7 @@ class JudgeTest : public testing::Test {
     result_.converged = true;
     result_.covariance = independentCovariance(0.003, 0.003);
     prior_.covariance = independentCovariance(0.05, 0.05);
-    motion_.found = true;
+    prior_.is_measured = true;
     show(0.9);
   }
 
@@ -30,13 +30,12 @@ class JudgeTest : public testing::Test {
   /// Metres from the prediction.
   FrameOutcome judged(double step_m) {
     result_.T_map_camera.translation().x() = step_m;
-    return judge(frame_, result_, prior_, motion_, TrackingConfig{}).outcome;
+    return judge(frame_, result_, prior_, TrackingConfig{}).outcome;
   }
 
   WorkingFrame frame_;
   TrackingResult result_;
   PosePrior prior_;
-  SparseMotion motion_;
 };
 
 TEST_F(JudgeTest, WhatThePredictionAllowsIsBelieved) {
@@ -66,7 +65,7 @@ TEST_F(JudgeTest, APredictionThatLostItsWeightMayBeLeftFarther) {
 TEST_F(JudgeTest, WithoutCornersTheImagesHaveToProveAStep) {
   show(0.25);
   EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners say the same";
-  motion_.found = false;
+  prior_.is_measured = false;
   EXPECT_EQ(judged(0.1), FrameOutcome::jumped) << "little of the view is in the map";
   EXPECT_EQ(judged(0.01), FrameOutcome::fused) << "as it was going to";
   show(0.9);
@@ -76,7 +75,7 @@ TEST_F(JudgeTest, WithoutCornersTheImagesHaveToProveAStep) {
 TEST_F(JudgeTest, WithoutCornersNoDirectionMayBeFree) {
   result_.free_directions = 1;
   EXPECT_EQ(judged(0.01), FrameOutcome::fused);
-  motion_.found = false;
+  prior_.is_measured = false;
   EXPECT_EQ(judged(0.01), FrameOutcome::degenerate);
 }
 

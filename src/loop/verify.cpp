@@ -121,10 +121,10 @@ TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
   return start;
 }
 
-double positionSigma(const TrackingResult& alignment) {
-  const Eigen::Matrix3d covariance = alignment.covariance.topLeftCorner<3, 3>();
+double positionSigma(const Matrix6d& covariance) {
+  const Eigen::Matrix3d of_shift = covariance.topLeftCorner<3, 3>();
   return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]));
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_shift).eigenvalues()[2]));
 }
 
 bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits) {
@@ -149,7 +149,8 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
   const double least =
       hasShape(v.agreement, limits) ? limits.min_correlation_of_shape : limits.min_correlation;
   if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
-  if (v.alignment.free_directions > 0 || positionSigma(v.alignment) > limits.max_sigma_m) {
+  if (v.alignment.free_directions > 0 ||
+      positionSigma(v.alignment.covariance) > limits.max_sigma_m) {
     return PlaceDoubt::degenerate;
   }
   if (!isWithin(step, limits.max_shift_m, limits.max_turn_rad)) {

@@ -27,6 +27,7 @@ void visitFields(Config& config, FieldVisitor& visitor) {
   visitGroup("sensor", config.sensor, visitor);
   visitGroup("frame", config.frame, visitor);
   visitGroup("tracking", config.tracking, visitor);
+  visitGroup("robot", config.robot, visitor);
   visitGroup("map", config.map, visitor);
   visitGroup("loop", config.loop, visitor);
   visitGroup("graph", config.graph, visitor);

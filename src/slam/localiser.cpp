@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "posefusion/calibration/depth_correction.hpp"
+#include "posefusion/loop/verify.hpp"
 
 namespace pf {
 namespace {
@@ -29,6 +30,19 @@ constexpr double kMaxReckoned_m_s = 1.2, kMaxReckoned_rad_s = 1.8;
 constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr double kProbation_s = 2.0;
 
+bool hasEnoughCorners(const SparseMotion& motion) {
+  return motion.found && motion.inliers >= kEnoughCorners &&
+         motion.inliers >= kHalf * motion.matches;
+}
+
+/// Where the two contradict each other the pictures are believed: the map is made of them.
+std::optional<MotionPrior> stepOf(const SparseMotion& motion,
+                                  const std::optional<MotionPrior>& told) {
+  if (!motion.found) return told;
+  const MotionPrior seen{motion.T_before_after, motion.covariance, true};
+  return told ? combined(seen, *told).value_or(seen) : seen;
+}
+
 }  // namespace
 
 Localiser::Localiser(const TrackingConfig& config) : config_(config) {}
@@ -48,19 +62,23 @@ Location Localiser::begin(const WorkingFrame& frame, std::int64_t stamp_ns, cons
 }
 
 Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                           bool forced, const ModelView& view, const MapRenderers& render) {
+                           bool forced, const ModelView& view, const MapRenderers& render,
+                           const std::optional<MotionPrior>& told) {
   Location location;
   pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
-  const PosePrior prior = predict(location.motion, elapsed_s);
+  location.step = stepOf(location.motion, told);
+  const PosePrior prior = predict(location.step, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
-  carry(location.motion);
+  location.is_told = told && told->has_shift;
+  carry(location.step.value_or(MotionPrior()),
+        location.is_told || hasEnoughCorners(location.motion));
   location.carried = carried_;
   Verdict verdict;
-  location.tracking = align(frame, prior, location.motion, render.model, verdict);
+  location.tracking = align(frame, prior, render.model, verdict);
   if (verdict.outcome == FrameOutcome::fused) {
     verdict = askFurther(frame, location, prior, {stamp_ns, forced}, render.view);
   }
@@ -95,26 +113,27 @@ SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns
                         frame.full_camera);
 }
 
-PosePrior Localiser::predict(const SparseMotion& motion, double elapsed_s) const {
-  PosePrior prior;
-  Eigen::Isometry3d step = motion.T_before_after;
-  Matrix6d noise = motion.covariance;
-  if (!motion.found) {
-    step = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
-    noise = independentCovariance(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
-                                  kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+PosePrior Localiser::predict(const std::optional<MotionPrior>& step, double elapsed_s) const {
+  MotionPrior expected;
+  if (step && step->has_shift) {
+    expected = *step;
+  } else {
+    expected.T_before_after = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
+    expected.covariance = independentCovariance(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
+                                                kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+    if (step) expected = combined(expected, *step).value_or(expected);
   }
-  prior.is_measured = motion.found;
-  prior.T_map_camera = previous_.T_map_camera * step;
-  const Matrix6d A = adjoint(step.inverse());
-  prior.covariance = A * previous_.covariance * A.transpose() + noise;
+  PosePrior prior;
+  prior.is_measured = expected.has_shift;
+  prior.T_map_camera = previous_.T_map_camera * expected.T_before_after;
+  const Matrix6d A = adjoint(expected.T_before_after.inverse());
+  prior.covariance = A * previous_.covariance * A.transpose() + expected.covariance;
   return prior;
 }
 
 /// Aligns from the prediction and, where the result is not believed, from other starts.
 TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prior,
-                                const SparseMotion& motion, const ModelRenderer& render,
-                                Verdict& verdict) const {
+                                const ModelRenderer& render, Verdict& verdict) const {
   TrackingResult best;
   best.T_map_camera = prior.T_map_camera;
   const double pixels = static_cast<double>(frame.depth_m.total());
@@ -127,7 +146,7 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
     const RenderedModel model = render(guess);
     const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
     const TrackingResult result = track(frame, model.points, start, config_);
-    const Verdict found = judge(frame, result, prior, motion, config_);
+    const Verdict found = judge(frame, result, prior, config_);
     const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
     if (!better) return false;
     best = result;
@@ -135,8 +154,8 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
     return found.outcome == FrameOutcome::fused;
   };
   if (attempt(prior.T_map_camera, false)) return best;
-  // The images may have slid along a wall: hold the corners' motion where it is known.
-  if (motion.found && attempt(prior.T_map_camera, true)) return best;
+  // The images may have slid along a wall: hold the motion where it is known.
+  if (prior.is_measured && attempt(prior.T_map_camera, true)) return best;
   if (state_ == TrackingState::lost) return best;
   if (config_.rotation_prealignment) {
     const FrameLevel& coarse = frame.levels[kLevels - 1];
@@ -149,12 +168,11 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
   return best;
 }
 
-void Localiser::carry(const SparseMotion& motion) {
-  const Matrix6d A = adjoint(motion.T_before_after.inverse());
-  carried_.T_map_camera = orthonormalised(carried_.T_map_camera * motion.T_before_after);
-  carried_.covariance = A * carried_.covariance * A.transpose() + motion.covariance;
-  carried_.is_measured = carried_.is_measured && motion.found && motion.inliers >= kEnoughCorners &&
-                         motion.inliers >= kHalf * motion.matches;
+void Localiser::carry(const MotionPrior& step, bool is_known) {
+  const Matrix6d A = adjoint(step.T_before_after.inverse());
+  carried_.T_map_camera = orthonormalised(carried_.T_map_camera * step.T_before_after);
+  carried_.covariance = A * carried_.covariance * A.transpose() + step.covariance;
+  carried_.is_measured = carried_.is_measured && is_known;
 }
 
 void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_s) {
@@ -180,21 +198,29 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   untrusted_in_a_row_ = reckoned_in_a_row_ = 0;
 }
 
+/// Whether the pose by the prediction alone is good enough to be told: by many corners, for a short
+/// time; or with the robot's odometry as long as it is known as well as at a searched place.
+bool Localiser::isReckonedWell(const Location& location, const PosePrior& prior,
+                               double reckoned_s) const {
+  const SparseMotion& motion = location.motion;
+  if (location.is_told && positionSigma(prior.covariance) <= VerifyLimits().max_sigma_m)
+    return true;
+  return motion.found && motion.inliers >= kManyCorners &&
+         motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
+         isWithin(motion.T_before_after, kMaxReckoned_m_s * pace_.frame_s,
+                  kMaxReckoned_rad_s * pace_.frame_s);
+}
+
 /// Not believed: the pose is carried on by the prediction, and told for as long as that is good.
 void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns) {
   ++untrusted_in_a_row_;
   const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);
-  const SparseMotion& motion = location.motion;
   location.located =
-      (motion.found && motion.inliers >= kManyCorners &&
-       motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
-       untrusted_in_a_row_ == reckoned_in_a_row_ + 1 &&
-       isWithin(motion.T_before_after, kMaxReckoned_m_s * pace_.frame_s,
-                kMaxReckoned_rad_s * pace_.frame_s));
+      untrusted_in_a_row_ == reckoned_in_a_row_ + 1 && isReckonedWell(location, prior, reckoned_s);
   if (location.outcome == FrameOutcome::forced) {
     const Eigen::Isometry3d off = prior.T_map_camera.inverse() * location.tracking.T_map_camera;
     location.located = location.tracking.free_directions == 0 &&
-                       (!motion.found || isWithin(off, kMaxForced_m, kMaxForced_rad));
+                       (!prior.is_measured || isWithin(off, kMaxForced_m, kMaxForced_rad));
     if (location.located) seen_ns_ = stamp_ns;
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;

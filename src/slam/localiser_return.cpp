@@ -39,7 +39,7 @@ int proofsIn(double seconds, const Pace& pace) {
 /// Says how badly a pose is known that little of the picture tells of; empty: well enough.
 std::string poorlyKnown(const WorkingFrame& frame, const TrackingResult& tracking) {
   if (frame.valid_pixels >= kLittleView * static_cast<double>(frame.depth_m.total())) return {};
-  const double sigma_m = positionSigma(tracking);
+  const double sigma_m = positionSigma(tracking.covariance);
   if (sigma_m <= VerifyLimits().max_sigma_m) return {};
   char text[48];
   std::snprintf(text, sizeof text, "little in view, known to %.3f m", sigma_m);
@@ -68,14 +68,14 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
   const Eigen::Vector3d way =
       tracking.T_map_camera.translation() - located_.T_map_camera.translation();
   if (moment.forced) {
-    const bool is_blind = !location.motion.found && blind_s > kMaxBlind_s;
+    const bool is_blind = !prior.is_measured && blind_s > kMaxBlind_s;
     const bool is_far = way.norm() > kMaxForcedWay_m;
     if (state_ == TrackingState::lost || (!is_blind && !is_far)) return {};
     return {FrameOutcome::disagrees, "blurred, and far from the last pose"};
   }
   const bool is_after_gap =
       state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m);
-  const bool is_alone = !location.motion.found && !agree(prior.T_map_camera, tracking.T_map_camera);
+  const bool is_alone = !prior.is_measured && !agree(prior.T_map_camera, tracking.T_map_camera);
   if (!is_after_gap && !is_alone) return {};
   const PlaceVerdict strict = askStrictly(frame, tracking, render);
   const bool by_shape =
@@ -115,7 +115,7 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   is_place_verified_ = is_place_verified_ && looks_right && fits;
   // A place that was verified may be left for a view that hardly tells where it is from.
   const bool is_unsure =
-      is_place_verified_ && positionSigma(location.tracking) > VerifyLimits().max_sigma_m;
+      is_place_verified_ && positionSigma(location.tracking.covariance) > VerifyLimits().max_sigma_m;
   if (is_unsure) proofs_ = std::min(proofs_, needed - 1);
   if (proofs_ >= needed) {
     const PlaceDoubt doubt = is_place_verified_

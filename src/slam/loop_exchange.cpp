@@ -131,7 +131,7 @@ std::deque<LoopExchange::Asked>::iterator LoopExchange::findDue(const Mapper& ma
       std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return !a.isForPlace(); });
   const auto place =
       std::find_if(asked_.begin(), asked_.end(), [](const Asked& a) { return a.isForPlace(); });
-  for (const auto one : {place, first}) {
+  for (const auto& one : {place, first}) {
     if (one != asked_.end() && responder_->isReady(one->number)) return one;
   }
   return asked_.end();

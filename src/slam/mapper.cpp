@@ -50,7 +50,8 @@ Location Mapper::State::locate(const StaticFrame& input) {
     render.view = [=](const Eigen::Isometry3d& T) -> const ModelView& {
       return viewFrom({where, T});
     };
-    return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render);
+    return localiser.locate(frame, stamp_ns, input.flow, input.forced, view, render,
+                            robot.between(localiser.lastStamp(), stamp_ns));
   }
   const auto needed =
       config.tracking.min_view_fraction * static_cast<double>(frame.depth_m.total());
@@ -61,6 +62,18 @@ Location Mapper::State::locate(const StaticFrame& input) {
   nowhere.outcome = FrameOutcome::no_depth;
   nowhere.T_map_camera = T_map_start;
   return nowhere;
+}
+
+/// What the robot's other sensors say of a motion is held against what the images show of it,
+/// where they show all of it.
+void Mapper::State::tellRobot(const Location& location, const std::optional<MapPose>& before,
+                              std::int64_t before_ns) {
+  if (!before || location.outcome != FrameOutcome::fused || location.is_return ||
+      location.tracking.free_directions > 0) {
+    return;
+  }
+  robot.compare(before_ns, last_stamp_ns, before->T_map_camera.inverse() * location.T_map_camera,
+                location.covariance);
 }
 
 void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
@@ -112,6 +125,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   s.frame.assign(input.frame, input.mask, s.config.frame, s.sensor);
   const std::optional<MapPose> before = s.trackedPose();
   Location location = s.locate(input);
+  s.tellRobot(location, before, before_ns);
   s.reckon(location, before, before_ns);
   s.countLostTime(location, before_ns);
   if (s.wantsFragment(input)) location = s.beginFragment();
@@ -176,6 +190,12 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   status.map_full = state_->map.refused() > 0;
   return status;
 }
+
+void Mapper::addOdometry(const StampedPose& pose) { state_->robot.addOdometry(pose); }
+
+void Mapper::addImu(const ImuSample& sample) { state_->robot.addImu(sample); }
+
+const RobotMotion& Mapper::robot() const { return state_->robot; }
 
 const SurfelMap& Mapper::map() const { return state_->map; }
 

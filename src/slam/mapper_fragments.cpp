@@ -38,8 +38,8 @@ void Mapper::State::reckon(const Location& location, const std::optional<MapPose
   } else if (location.located && before && before->fragment == location.fragment) {
     reckoning.move(before->T_map_camera.inverse() * location.T_map_camera, location.covariance,
                    elapsed_s);
-  } else if (location.motion.found) {
-    reckoning.move(location.motion.T_before_after, location.motion.covariance, elapsed_s);
+  } else if (location.step && location.step->has_shift) {
+    reckoning.move(location.step->T_before_after, location.step->covariance, elapsed_s);
   } else {
     reckoning.pass(elapsed_s);
   }

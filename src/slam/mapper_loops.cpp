@@ -142,6 +142,7 @@ void Mapper::restartClock() {
   State& s = *state_;
   if (s.back_end.graph().keyframes().empty()) return reset();
   s.last_stamp_ns = kBeforeAll;
+  s.robot.restart();
   s.lost_s.reset();
   s.seek(s.localiser.lastPose(), s.localiser.brightness());
 }

@@ -12,6 +12,7 @@
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
+#include "posefusion/robot/robot_motion.hpp"
 #include "posefusion/slam/localiser.hpp"
 #include "posefusion/slam/mapper.hpp"
 #include "posefusion/slam/reckoning.hpp"
@@ -44,6 +45,7 @@ struct Mapper::State {
         sensor(depthSensorOf(c)),
         map(c.map, SurfelMap::kBlockSide_m, sensor),
         localiser(c.tracking),
+        robot(c.robot),
         back_end(c.graph) {}
 
   Config config;
@@ -51,6 +53,7 @@ struct Mapper::State {
   SurfelMap map;
   std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
+  RobotMotion robot;
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
   PinholeCamera camera;            ///< of the frames of the map, full size
   bool sees_other_camera = false;  ///< the last frame was of another one
@@ -112,6 +115,8 @@ struct Mapper::State {
   RenderedModel modelFrom(const MapPose& pose);
   const ModelView& viewFrom(const MapPose& pose);
   Location locate(const StaticFrame& input);
+  void tellRobot(const Location& location, const std::optional<MapPose>& before,
+                 std::int64_t before_ns);
   void fuse(const StaticFrame& input, const Location& location);
   void follow(const Location& location, bool fill);
   void seek(const MapPose& last, Brightness brightness);

@@ -65,7 +65,7 @@ bool isProof(const TrackingResult& result, int valid_pixels) {
 }
 
 Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrior& prior,
-              const SparseMotion& motion, const TrackingConfig& config) {
+              const TrackingConfig& config) {
   const double pixels = static_cast<double>(frame.depth_m.total());
   if (r.candidates < config.min_valid_fraction * pixels) {
     return {FrameOutcome::few_inliers,
@@ -78,7 +78,7 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
   if (r.seen_through > kMaxSeenThrough * r.candidates) {
     return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
   }
-  if (r.free_directions > 0 && !motion.found) return {FrameOutcome::degenerate, ""};
+  if (r.free_directions > 0 && !prior.is_measured) return {FrameOutcome::degenerate, ""};
   if (r.free_directions > 0 && r.candidates < kStrongOverlap * frame.valid_pixels) {
     return {FrameOutcome::degenerate,
             percentOf(r.candidates, frame.valid_pixels, "of the frame in the map")};
@@ -87,11 +87,11 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
   if (agree(prior.T_map_camera, r.T_map_camera)) return {};
   const std::string text = stepText(difference, "from the prediction");
   // Anything may have happened where nothing was measured: the images alone have to prove it.
-  if (!motion.found && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
+  if (!prior.is_measured && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
   const Vector6d error = logSe3(difference);
   const Matrix6d covariance = covarianceOfDifference(prior, r);
   if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
-  if (!motion.found) return {FrameOutcome::jumped, text};
+  if (!prior.is_measured) return {FrameOutcome::jumped, text};
   const bool overruled =
       isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
       isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad);

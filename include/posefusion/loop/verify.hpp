@@ -78,7 +78,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view);
 TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera);
 
 /// Standard deviation (m) of the camera's position in the direction that is known worst.
-double positionSigma(const TrackingResult& alignment);
+double positionSigma(const Matrix6d& covariance);
 
 /// Whether the shape alone says where the frame is: much of it is in the map, and faces many ways.
 bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits = {});

@@ -14,6 +14,7 @@
 #include "posefusion/loop/config.hpp"
 #include "posefusion/map/config.hpp"
 #include "posefusion/pose/config.hpp"
+#include "posefusion/robot/config.hpp"
 #include "posefusion/segmentation/config.hpp"
 #include "posefusion/tracking/config.hpp"
 
@@ -32,6 +33,7 @@ struct Config {
   SensorConfig sensor;
   FrameConfig frame;
   TrackingConfig tracking;
+  RobotConfig robot;
   MapConfig map;
   LoopConfig loop;
   GraphConfig graph;

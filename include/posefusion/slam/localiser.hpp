@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/frame/flow.hpp"
+#include "posefusion/robot/motion_prior.hpp"
 #include "posefusion/slam/recent_motion.hpp"
 #include "posefusion/slam/status.hpp"
 #include "posefusion/slam/verdict.hpp"
@@ -45,18 +47,24 @@ struct Location {
   /// the same, shows in no motion between them. Alignments are weighted by tracking.covariance.
   Matrix6d covariance = Matrix6d::Zero();
   SparseMotion motion;
-  /// Where the camera would be by its corners' motion alone since the last fused frame; measured
-  /// where many of them told of every step. Of a return, it tells what the loss has torn apart.
+  /// From the frame before: by corners, by the robot's other sensors, or by both; nothing where
+  /// neither knows.
+  std::optional<MotionPrior> step;
+  bool is_told = false;  ///< the robot's odometry is part of it
+  /// Where the camera would be by these steps alone since the last fused frame; measured where
+  /// many corners or the robot's odometry told of each. Of a return, it tells what the loss has
+  /// torn apart.
   PosePrior carried;
   std::string detail;
 
   MapPose pose() const { return {fragment, T_map_camera}; }
 };
 
-/// Finds each frame in the map: a prior from the corners' motion (or constant velocity where there
-/// are too few), alignment from it and, where that fails, from other starts, and a verdict. Carries
-/// the pose by dead reckoning while alignment fails. Coming back after a loss takes proof over
-/// several frames. Works in one fragment of the map at a time. Not thread safe.
+/// Finds each frame in the map: a prior from the corners' motion and what the robot's other sensors
+/// tell (or constant velocity where neither knows), alignment from it and, where that fails, from
+/// other starts, and a verdict. Carries the pose by dead reckoning while alignment fails. Coming
+/// back after a loss takes proof over several frames. Works in one fragment of the map at a time.
+/// Not thread safe.
 class Localiser {
  public:
   explicit Localiser(const TrackingConfig& config);
@@ -71,9 +79,13 @@ class Localiser {
 
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
   /// the last fused frame; `render` draws fragment(). A `forced` frame (see BlurScore) is not
-  /// believed enough to be fused.
+  /// believed enough to be fused. `told`: of the motion since lastStamp(), by what is believed
+  /// beside the camera.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                  bool forced, const ModelView& view, const MapRenderers& render);
+                  bool forced, const ModelView& view, const MapRenderers& render,
+                  const std::optional<MotionPrior>& told = std::nullopt);
+
+  std::int64_t lastStamp() const { return previous_.stamp_ns; }
 
   TrackingState state() const { return state_; }
   /// While lost: the last frames looked right at some place, and fitted each other.
@@ -127,11 +139,11 @@ class Localiser {
 
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
-  PosePrior predict(const SparseMotion& motion, double elapsed_s) const;
+  PosePrior predict(const std::optional<MotionPrior>& step, double elapsed_s) const;
   TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
-                       const SparseMotion& motion, const ModelRenderer& render,
-                       Verdict& verdict) const;
-  void carry(const SparseMotion& motion);
+                       const ModelRenderer& render, Verdict& verdict) const;
+  void carry(const MotionPrior& step, bool is_known);
+  bool isReckonedWell(const Location& location, const PosePrior& prior, double reckoned_s) const;
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   /// What else is asked of a frame that tracking found good. Where little is in view its position

@@ -11,6 +11,7 @@
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
 #include "posefusion/loop/worker.hpp"
+#include "posefusion/robot/robot_motion.hpp"
 #include "posefusion/slam/back_end.hpp"
 #include "posefusion/slam/config.hpp"
 #include "posefusion/slam/map_correction.hpp"
@@ -43,6 +44,14 @@ class Mapper {
   ~Mapper();
 
   FrameStatus process(const StaticFrame& input);
+
+  /// What the robot's other sensors tell, in the order of their stamps and before the frames that
+  /// it helps: the camera's pose in the frame of the odometry, and inertial samples along the
+  /// camera's axes. See RobotMotion for when it is believed. @{
+  void addOdometry(const StampedPose& pose);
+  void addImu(const ImuSample& sample);
+  const RobotMotion& robot() const;
+  /// @}
 
   /// What the frame just processed makes mapping ask the loop closer, once: a new keyframe, or
   /// where a lost camera is.

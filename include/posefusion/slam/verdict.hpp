@@ -15,9 +15,9 @@ struct Verdict {
 };
 
 /// Judges an alignment by itself (overlap, agreement, what is seen through, free directions) and by
-/// what is known beside it: the prior, and the corners' motion behind that.
+/// what is known beside it: the prior, and whether the motion behind that was measured.
 Verdict judge(const WorkingFrame& frame, const TrackingResult& result, const PosePrior& prior,
-              const SparseMotion& motion, const TrackingConfig& config);
+              const TrackingConfig& config);
 
 /// Is the alignment good enough to be believed where nothing else is known: after a loss, after a
 /// motion that nothing measured? `valid_pixels` are those of the frame.

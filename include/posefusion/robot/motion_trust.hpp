@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "posefusion/robot/motion_prior.hpp"
+
+namespace pf {
+
+/// How far a source of motions is believed, by what it told when the images told the motion too: a
+/// sequential test (Wald 1945) of "it tells the camera's motion" against the better of two that
+/// explain it without: "it tells nothing", and "it always says that nothing moves". A source that
+/// stands still beside a camera that stands still has shown nothing. Shift and turn are tested
+/// apart, and where both are told both have to pass.
+class MotionTrust {
+ public:
+  /// `covariance` (of the twist in the later camera's frame) is that of what was seen; it took
+  /// `elapsed_s`.
+  void compare(const MotionPrior& told, const Eigen::Isometry3d& T_seen, const Matrix6d& covariance,
+               double elapsed_s);
+
+  bool isBelieved() const;
+
+  /// Its motions with the errors that they have shown.
+  MotionPrior honest(MotionPrior told) const;
+
+  /// What it tells from now on has to be shown anew.
+  void doubt();
+
+ private:
+  struct Half {
+    double evidence = 0;  ///< log-likelihood ratio, within limits
+    double spread = 1;    ///< of its errors: mean normalised square, at least 1
+
+    /// `anything`: standard deviation of what a robot may do meanwhile.
+    void compare(const Eigen::Vector3d& error, const Eigen::Vector3d& moved,
+                 const Eigen::Matrix3d& told, const Eigen::Matrix3d& seen, double anything);
+  };
+
+  Half shift_, turn_;
+  bool has_shift_ = false;
+};
+
+}  // namespace pf
