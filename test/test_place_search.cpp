@@ -246,7 +246,7 @@ TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
   verdict.agreement = {1.0, 1.0, 0.0, 0.0, 1.0, 0.2};
   for (const double sigma_m : {0.03, 0.04}) {
     verdict.alignment.covariance(1, 1) = sigma_m * sigma_m;
-    EXPECT_DOUBLE_EQ(positionSigma(verdict.alignment), sigma_m);
+    EXPECT_DOUBLE_EQ(positionSigma(verdict.alignment.covariance), sigma_m);
     const PlaceDoubt doubt = judgePlace(verdict, verdict.alignment.T_map_camera, {});
     EXPECT_EQ(doubt, sigma_m < 0.033 ? PlaceDoubt::none : PlaceDoubt::degenerate);
   }

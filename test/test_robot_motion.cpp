@@ -184,7 +184,8 @@ TEST(RobotMotion, UnusableInputIsCountedAndNamed) {
   EXPECT_NE(robot.odometry().why_left_out.find("rigid"), std::string::npos);
   EXPECT_EQ(robot.odometry().received, 4U);
   EXPECT_EQ(robot.odometry().left_out, 3U);
-  ImuSample sample{stampAt(1), {0, 0, std::numeric_limits<double>::infinity()}, {}};
+  ImuSample sample{
+      stampAt(1), {0, 0, std::numeric_limits<double>::infinity()}, Eigen::Vector3d::Zero()};
   robot.addImu(sample);
   EXPECT_EQ(robot.imu().left_out, 1U);
 }
@@ -232,8 +233,9 @@ TEST(RobotMotion, LegsTellNothingInAFallUntilTheyAgreeAgain) {
   const auto falls = [](double s) {
     return Eigen::Vector3d(0, s > 6 && s < 6.3 ? -0.5 : -9.81, 0);
   };
-  RobotMotion before = withImu({}, 5.9, falls), in = withImu({}, 6.4, falls),
-              after = withImu({}, 7.9, falls);
+  RobotMotion before = withImu(Eigen::Vector3d::Zero(), 5.9, falls),
+              in = withImu(Eigen::Vector3d::Zero(), 6.4, falls),
+              after = withImu(Eigen::Vector3d::Zero(), 7.9, falls);
   EXPECT_TRUE(before.between(stampAt(5.8), stampAt(5.83))->has_shift);
   EXPECT_FALSE(in.between(stampAt(6.3), stampAt(6.33))->has_shift) << "the IMU's turn alone";
   EXPECT_TRUE(after.between(stampAt(7.8), stampAt(7.83))->has_shift);

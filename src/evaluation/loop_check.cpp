@@ -13,8 +13,8 @@ std::vector<LoopError> checkLoops(const Trajectory& truth, const std::vector<Key
   std::vector<LoopError> errors;
   for (const PoseConstraint& c : constraints) {
     if (c.kind != ConstraintKind::loop) continue;
-    const auto from = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.from)).stamp_ns);
-    const auto to = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
+    const auto from = poseAt(truth, keyframes.at(static_cast<std::size_t>(c.from)).stamp_ns);
+    const auto to = poseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
     if (!from || !to) continue;
     const Eigen::Isometry3d off = (from->inverse() * *to).inverse() * c.T_from_to;
     errors.push_back({c.from, c.to, off.translation().norm(), angleOf(off) * 180.0 / M_PI});

@@ -37,17 +37,6 @@ std::optional<Eigen::Isometry3d> nearestTruth(const Trajectory& truth, std::int6
   return pose.T_world_camera;
 }
 
-/// The pose at a time between two poses: positions on a line, rotations at a constant rate.
-Eigen::Isometry3d between(const StampedPose& a, const StampedPose& b, std::int64_t stamp_ns) {
-  const double part = static_cast<double>(stamp_ns - a.stamp_ns) /
-                      static_cast<double>(std::max<std::int64_t>(1, b.stamp_ns - a.stamp_ns));
-  const Eigen::Isometry3d &A = a.T_world_camera, &B = b.T_world_camera;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = A.linear() * expSo3(part * logSo3(A.linear().transpose() * B.linear()));
-  T.translation() = (1.0 - part) * A.translation() + part * B.translation();
-  return T;
-}
-
 /// `next(i)` is the index of the estimated pose that pose i is compared with.
 template <typename Next>
 RelativeError relativeError(const Trajectory& truth, const Trajectory& estimate, double scale,
@@ -70,21 +59,6 @@ RelativeError relativeError(const Trajectory& truth, const Trajectory& estimate,
 }
 
 }  // namespace
-
-std::optional<Eigen::Isometry3d> truePoseAt(const Trajectory& truth, std::int64_t stamp_ns) {
-  const auto after =
-      std::lower_bound(truth.begin(), truth.end(), stamp_ns,
-                       [](const StampedPose& p, std::int64_t stamp) { return p.stamp_ns < stamp; });
-  const auto isNear = [&](const StampedPose& p) {
-    return std::llabs(p.stamp_ns - stamp_ns) < kMaxTruthDifference_ns;
-  };
-  const bool has_after = after != truth.end(), has_before = after != truth.begin();
-  const bool near = (has_after && isNear(*after)) || (has_before && isNear(*std::prev(after)));
-  if (!near) return std::nullopt;
-  if (!has_after) return truth.back().T_world_camera;
-  if (!has_before) return truth.front().T_world_camera;
-  return between(*std::prev(after), *after, stamp_ns);
-}
 
 ErrorStatistics statisticsOf(std::vector<double> errors) {
   ErrorStatistics s;

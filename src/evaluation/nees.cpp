@@ -27,7 +27,7 @@ struct KnownPose {
 std::vector<KnownPose> withTruth(const Trajectory& truth, const std::vector<UncertainPose>& poses) {
   std::vector<KnownPose> known;
   for (const UncertainPose& pose : poses) {
-    if (const auto T = truePoseAt(truth, pose.stamp_ns)) known.push_back({pose, *T});
+    if (const auto T = poseAt(truth, pose.stamp_ns)) known.push_back({pose, *T});
   }
   return known;
 }
@@ -159,8 +159,8 @@ NeesShare neesOfConstraints(const Trajectory& truth, const std::vector<Keyframe>
   std::vector<MotionError> errors;
   std::vector<double> nees;
   for (const PoseConstraint& c : constraints) {
-    const auto from = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.from)).stamp_ns);
-    const auto to = truePoseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
+    const auto from = poseAt(truth, keyframes.at(static_cast<std::size_t>(c.from)).stamp_ns);
+    const auto to = poseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
     if (!from || !to) continue;
     errors.push_back(normalised(logSe3(to->inverse() * *from * c.T_from_to), c.covariance));
     nees.push_back(errors.back().nees);

@@ -19,8 +19,7 @@ constexpr double kDegrees = 180.0 / M_PI;
 std::vector<PosePair> pairWithTruth(const Trajectory& truth, const Trajectory& estimate) {
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : estimate) {
-    if (const auto T = truePoseAt(truth, pose.stamp_ns))
-      pairs.push_back({{pose.stamp_ns, *T}, pose});
+    if (const auto T = poseAt(truth, pose.stamp_ns)) pairs.push_back({{pose.stamp_ns, *T}, pose});
   }
   return pairs;
 }
@@ -70,7 +69,7 @@ std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& e
   std::size_t from = 0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     const std::int64_t stamp_ns = estimate[i].stamp_ns;
-    const auto T = truePoseAt(truth, stamp_ns);
+    const auto T = poseAt(truth, stamp_ns);
     if (!T) continue;
     pairs.push_back({{stamp_ns, *T}, estimate[i]});
     while (from + 1 < pairs.size() && stamp_ns - pairs[from + 1].estimate.stamp_ns >= kSecond_ns) {
@@ -117,7 +116,7 @@ ErrorStatistics heldError(const Trajectory& truth, const Trajectory& estimate,
 
 double lastError(const Trajectory& truth, const Trajectory& estimate, const Alignment& alignment) {
   for (auto pose = estimate.rbegin(); pose != estimate.rend(); ++pose) {
-    const auto T = truePoseAt(truth, pose->stamp_ns);
+    const auto T = poseAt(truth, pose->stamp_ns);
     if (!T) continue;
     return (alignment * Eigen::Vector3d(pose->T_world_camera.translation()) - T->translation())
         .norm();

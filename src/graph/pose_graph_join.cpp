@@ -52,7 +52,7 @@ std::string PoseGraph::unexpected(const PoseConstraint& loop,
   std::snprintf(text, sizeof text,
                 "the fragment would lie where dead reckoning does not lead: a chi-square of %.1f, "
                 "expected %.1f or less",
-                expected.chiSquare(found), config_.max_chi_square);
+                expected.chiSquare(found), ExpectedPlace::kMostChiSquare);
   return text;
 }
 

@@ -15,7 +15,11 @@ namespace {
 constexpr double kNearTurn_rad = 0.4;  // by poses that may have drifted
 constexpr double kMostUnlike = 0.5;    // dissimilarity of ferns that is looked at
 constexpr std::size_t kFernMatches = 2;
-constexpr std::size_t kPlacesLike = 12;  // keyframes that a lost camera's picture is matched with
+// Keyframes that a lost camera's picture is matched with, and how many of them at one place: where
+// rooms look alike, all of them have to be asked.
+constexpr std::size_t kPlacesLike = 12;
+constexpr int kAtAPlace = 3;
+constexpr double kPlace_m = 1.5;
 // The two directions of a pair must tell the same.
 constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
@@ -32,6 +36,13 @@ Features featuresIn(const KeyframeView& view) {
   FeatureImage image{view.intensity, cv::Mat(), view.camera};
   view.depth_mm.convertTo(image.depth_m, CV_32F, 1e-3);
   return findFeatures(image);
+}
+
+std::ptrdiff_t countNear(const std::vector<MapPose>& poses, const MapPose& pose) {
+  return std::count_if(poses.begin(), poses.end(), [&](const MapPose& other) {
+    const Eigen::Vector3d way = other.T_map_camera.translation() - pose.T_map_camera.translation();
+    return other.fragment == pose.fragment && way.norm() < kPlace_m;
+  });
 }
 
 }  // namespace
@@ -141,9 +152,12 @@ std::vector<MapPose> LoopCloser::placesLike(const KeyframeView& view) {
     alike.emplace_back(FernDatabase::dissimilarity(code, keyframes_[i].code), i);
   }
   std::sort(alike.begin(), alike.end());
-  alike.resize(std::min(alike.size(), kPlacesLike));
   const Features features = featuresIn(view);
+  std::vector<MapPose> asked;
   for (const auto& [dissimilarity, i] : alike) {
+    if (asked.size() == kPlacesLike) break;
+    if (countNear(asked, keyframes_[i].view.pose) == kAtAPlace) continue;
+    asked.push_back(keyframes_[i].view.pose);
     const FeatureMatch match = matchFeatures(featuresOf(keyframes_[i]), features, sensor_);
     if (!match.found) continue;
     const MapPose& pose = keyframes_[i].view.pose;

@@ -14,6 +14,8 @@ namespace {
 constexpr int kRounds = 3;
 constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.06;
+// Of two places that look alike one is believed by odds of 150 to 1: so much more chi-square.
+constexpr double kTellsApart = 10.0;
 constexpr float kAgreeingSigmas = 4.0F;
 constexpr float kMinNormalCosine = 0.7F;
 // Grey levels are compared in windows of so many pixels: light and exposure change slowly.
@@ -81,6 +83,26 @@ void compareRow(const WorkingFrame& frame, const ModelView& view, int v, GreySum
     if (still[u] != 0) windows[u / kWindow].add(grey[u], mapped[u]);
   }
   counts.normals += normals.cast<double>();
+}
+
+bool isSamePlace(const PlaceVerdict& a, const PlaceVerdict& b) {
+  const Eigen::Isometry3d step = a.alignment.T_map_camera.inverse() * b.alignment.T_map_camera;
+  return a.fragment == b.fragment && isWithin(step, kSamePlace_m, kSamePlace_rad);
+}
+
+/// Of places that all look right (at least one) that where dead reckoning expects the camera, if by
+/// far; else the best one, as ambiguous.
+PlaceVerdict likeliest(std::vector<PlaceVerdict>& places, const ExpectedPlace* expected) {
+  if (places.size() == 1) return places.front();
+  const auto surprise = [&](const PlaceVerdict& place) {
+    return expected == nullptr ? 0.0 : expected->chiSquare(place.pose());
+  };
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const auto& a, const auto& b) { return surprise(a) < surprise(b); });
+  if (surprise(places[1]) - surprise(places[0]) < kTellsApart) {
+    places[0].doubt = PlaceDoubt::ambiguous;
+  }
+  return places[0];
 }
 
 }  // namespace
@@ -194,23 +216,24 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
 
 PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame& frame,
                                        const std::vector<PlaceCandidate>& candidates,
-                                       std::size_t most) {
-  PlaceVerdict best;
+                                       std::size_t most, const ExpectedPlace* expected) {
+  PlaceVerdict first;
+  std::vector<PlaceVerdict> places;  // believed, the best of each
   for (std::size_t i = 0; i < std::min(most, candidates.size()); ++i) {
     const PlaceVerdict verdict = verify(map, frame, candidates[i].pose);
-    if (i == 0) best = verdict;
-    if (!verdict.accepted() || i == 0) continue;
-    if (best.accepted()) {
-      const Eigen::Isometry3d step =
-          best.alignment.T_map_camera.inverse() * verdict.alignment.T_map_camera;
-      if (best.fragment != verdict.fragment || !isWithin(step, kSamePlace_m, kSamePlace_rad)) {
-        best.doubt = PlaceDoubt::ambiguous;
-        return best;
-      }
+    if (i == 0) first = verdict;
+    if (!verdict.accepted()) continue;
+    const auto same = std::find_if(places.begin(), places.end(),
+                                   [&](const auto& p) { return isSamePlace(p, verdict); });
+    if (same == places.end()) {
+      places.push_back(verdict);
+    } else if (verdict.score() > same->score()) {
+      *same = verdict;
     }
-    if (!best.accepted() || verdict.score() > best.score()) best = verdict;
+    if (places.size() > 1 && expected == nullptr) break;
   }
-  return best;
+  if (places.empty()) return first;
+  return likeliest(places, expected);
 }
 
 }  // namespace pf

@@ -144,12 +144,14 @@ std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question)
   for (const MapPose& pose : closer_.placesLike(keyframeView(question.frame, 0, {}, true))) {
     if (question.admits(pose)) like.emplace_back().pose = pose;
   }
-  const PlaceVerdict soon = verifier_.verifyBest(*question.map, question.frame, like, kVerified);
+  const PlaceVerdict soon =
+      verifier_.verifyBest(*question.map, question.frame, like, kVerified, question.expected.get());
   if (!like.empty() && soon.accepted()) return soon;
   std::size_t most = 0;
   const std::vector<PlaceCandidate> candidates = searchAll(question, most);
   if (candidates.empty()) return std::nullopt;
-  PlaceVerdict verdict = verifier_.verifyBest(*question.map, question.frame, candidates, most);
+  PlaceVerdict verdict = verifier_.verifyBest(*question.map, question.frame, candidates, most,
+                                              question.expected.get());
   if (!verdict.accepted()) return std::nullopt;
   return verdict;
 }

@@ -35,11 +35,9 @@ std::optional<Eigen::Isometry3d> OdometryTrack::at(std::int64_t stamp_ns) const 
   const bool is_beyond = after == poses_.end();
   if (is_beyond || after == poses_.begin()) after = is_beyond ? after - 1 : after + 1;
   const StampedPose &a = *(after - 1), &b = *after;
-  const double gap_s = secondsBetween(a.stamp_ns, b.stamp_ns);
-  if (gap_s > config_.odometry_max_gap_s) return std::nullopt;
+  if (secondsBetween(a.stamp_ns, b.stamp_ns) > config_.odometry_max_gap_s) return std::nullopt;
   if (is_beyond && secondsBetween(b.stamp_ns, stamp_ns) > kMostCarriedOn_s) return std::nullopt;
-  const Vector6d step = logSe3(a.T_world_camera.inverse() * b.T_world_camera);
-  return a.T_world_camera * expSe3(secondsBetween(a.stamp_ns, stamp_ns) / gap_s * step);
+  return poseBetween(a, b, stamp_ns);
 }
 
 std::optional<MotionPrior> OdometryTrack::between(std::int64_t from_ns, std::int64_t to_ns) const {

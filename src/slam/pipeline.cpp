@@ -58,6 +58,7 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   still.forced = out.seen.blur.forced;
   still.in_map_mask = out.segmentation.in_map_mask;
   still.input_depth = frame.depth;
+  robot_.playUntil(frame.stamp_ns, mapper_);
   out.status = mapper_.process(still);
   watch.lapMs();
   const double waited_before_ms = loop_thread_.waitedMs();

@@ -59,7 +59,7 @@ class Recording {
       const std::int64_t stamp_ns = read->frame.stamp_ns;
       if (first_ns_ < 0) first_ns_ = stamp_ns;
       out.time_s = 1e-9 * static_cast<double>(stamp_ns - first_ns_);
-      const auto pose = truePoseAt(truth_, stamp_ns);
+      const auto pose = poseAt(truth_, stamp_ns);
       if (!read->defect.empty() || !pose || !wanted(out.time_s)) continue;
       out.T = *pose;
       const auto path = std::filesystem::path(folder_) / "mask" / (formatStamp(stamp_ns) + ".png");

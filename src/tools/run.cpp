@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/robot_files.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run.hpp"
 #include "posefusion/run/run_report.hpp"
@@ -68,6 +69,13 @@ void sayLeftOut(const InputReport& report, Progress& progress) {
   say(report.color_without_depth, "colour images have no depth image near in time: left out");
   say(report.depth_without_color, "depth images have no colour image near in time: left out");
   for (const auto& note : report.notes) progress.say(note);
+}
+
+RobotRecording robotFor(const RunOptions& options) {
+  RobotRecording recording;
+  if (!options.odometry.empty()) recording.odometry = loadOdometry(options.odometry);
+  if (!options.imu.empty()) recording.imu = loadImu(options.imu);
+  return recording;
 }
 
 /// What the user should know of a frame; empty: nothing.
@@ -137,6 +145,7 @@ int run(const RunOptions& given) {
   report.setTruth(truthFor(options, *source));
   Pipeline pipeline(options.config, detectorFor(options, *source));
   requireOtherFolder(options);
+  pipeline.accompany(robotFor(options));
   if (!options.calibration.empty()) useCalibration(options, pipeline);
   if (!options.map_file.empty()) loadMap(options, pipeline);
   stopOnSignals();

@@ -95,6 +95,9 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
   app.add_option("--camera", reading.camera_file, "camera file, instead of the input's own");
   app.add_option("--calibration", options.calibration,
                  "file of posefusion_calibrate: the depth of each frame is corrected by it");
+  app.add_option("--odometry", options.odometry,
+                 "the robot's odometry, TUM format: see docs/robot.md");
+  app.add_option("--imu", options.imu, "its inertial sensor, EuRoC format");
   auto* map = app.add_option("--map", options.map_file,
                              "map file (*.pfdb) to begin in: the camera is looked for there");
   auto* localize = app.add_flag("--localize-only", options.localize_only,

@@ -16,6 +16,7 @@ struct RunOptions {
   std::string output = "output";
   std::string truth;  ///< empty: that of the input
   posefusion_ros::InputOptions reading;
+  std::string imu, odometry;   ///< files of the robot's other sensors; empty: none
   std::string calibration;     ///< file that depth is corrected by; empty: none
   std::size_t max_frames = 0;  ///< 0: all
   int threads = 0;             ///< 0: all cores

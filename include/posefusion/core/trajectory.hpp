@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace pf {
@@ -14,6 +15,14 @@ struct StampedPose {
 
 /// Poses in the order of their stamps.
 using Trajectory = std::vector<StampedPose>;
+
+/// The pose at a time between two, or just after the later: positions on a line, turning at a
+/// constant rate.
+Eigen::Isometry3d poseBetween(const StampedPose& a, const StampedPose& b, std::int64_t stamp_ns);
+
+/// The pose of just that time, so between two of the trajectory. Nothing where none of it is within
+/// 0.02 s.
+std::optional<Eigen::Isometry3d> poseAt(const Trajectory& poses, std::int64_t stamp_ns);
 
 /// From a camera's optical frame (z forward, x right, y down) to axes with x forward, y left, z up
 /// (REP-103). Exact. Files of results are in the frame of the first camera turned so: z is up where

@@ -21,10 +21,6 @@ struct ErrorStatistics {
 /// Statistics of errors; all 0 of none.
 ErrorStatistics statisticsOf(std::vector<double> errors);
 
-/// The true pose of just that time: between two of the trajectory on a line, turning at a constant
-/// rate. Nothing where none of it is within 0.02 s.
-std::optional<Eigen::Isometry3d> truePoseAt(const Trajectory& truth, std::int64_t stamp_ns);
-
 /// A true pose and an estimated one of about the same time.
 struct PosePair {
   StampedPose truth;

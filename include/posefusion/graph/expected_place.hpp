@@ -25,7 +25,11 @@ class ExpectedPlace {
   /// nothing is known of the way.
   double chiSquare(const MapPose& found) const;
 
-  bool admits(const MapPose& found) const { return chiSquare(found) <= config_.max_chi_square; }
+  /// A right place is refused one time in twenty, until dead reckoning has grown less sure; a wrong
+  /// one would stay.
+  bool admits(const MapPose& found) const { return chiSquare(found) <= kMostChiSquare; }
+
+  static constexpr double kMostChiSquare = 12.59;  ///< 95 % of 6 degrees of freedom
 
  private:
   GraphConfig config_;

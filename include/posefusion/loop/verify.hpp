@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "posefusion/frame/working_frame.hpp"
+#include "posefusion/graph/expected_place.hpp"
 #include "posefusion/loop/place_search.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/tracking/tracker.hpp"
@@ -100,10 +101,12 @@ class PlaceVerifier {
 
   PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame, const MapPose& candidate);
 
-  /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best;
-  /// `ambiguous` when they lead to different poses, or fragments. Else the verdict on the first.
+  /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best.
+  /// When they lead to different poses, or fragments, the one that dead reckoning expects, where it
+  /// is given and tells them apart; else `ambiguous`. Of none believed the verdict on the first.
   PlaceVerdict verifyBest(const SurfelMap& map, const WorkingFrame& frame,
-                          const std::vector<PlaceCandidate>& candidates, std::size_t most = 6);
+                          const std::vector<PlaceCandidate>& candidates, std::size_t most = 6,
+                          const ExpectedPlace* expected = nullptr);
 
  private:
   TrackingConfig tracking_;

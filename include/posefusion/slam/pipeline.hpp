@@ -10,6 +10,7 @@
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/detector.hpp"
+#include "posefusion/robot/robot_recording.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion/slam/config.hpp"
 #include "posefusion/slam/loop_thread.hpp"
@@ -61,6 +62,9 @@ class Pipeline {
   /// Before load() and the first frame; see Mapper::calibrate().
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
+  /// Before the first frame: what the robot's other sensors told meanwhile.
+  void accompany(RobotRecording recording) { robot_ = RobotPlayback(std::move(recording)); }
+
   /// Between two frames: takes in loops that somebody else has found; see Mapper::take().
   void take(const LoopAnswer& answer) { mapper_.take(answer); }
 
@@ -82,6 +86,7 @@ class Pipeline {
   std::unique_ptr<PoseDetector> detector_;
   FlowTracker flow_;
   PeopleSegmenter segmenter_;
+  RobotPlayback robot_;
   Mapper mapper_;
   LoopThread loop_thread_;
 };
