@@ -22,7 +22,20 @@ class CameraPath {
   virtual ~CameraPath() = default;
   virtual Eigen::Isometry3d at(double time_s) const = 0;
   virtual std::vector<Event> events() const { return {}; }
+  virtual bool walks() const { return false; }  ///< on legs of its own
 };
+
+/// Seconds of a scenario.
+struct TimeSpan {
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
+/// How many moments of this rate are in a span, both ends included.
+std::size_t momentCount(const TimeSpan& span, double rate_hz);
+
+/// Takes the optical frame (z forward, y down) of a level camera to a body's (x ahead, z up).
+Eigen::Matrix3d bodyFromOptical();
 
 /// Camera at `eye` that looks at `target`, upright (optical frame: z forward, y down).
 Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);

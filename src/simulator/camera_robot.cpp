@@ -67,6 +67,8 @@ class RobotPath : public CameraPath {
     return events;
   }
 
+  bool walks() const override { return true; }
+
  private:
   /// The part of a way after the part `x` of its time, with speed rising and falling over `ramp`.
   static double soften(double x, double ramp) {

@@ -8,6 +8,7 @@
 #include "posefusion/io/tum_writer.hpp"
 #include "simulator/depth_distortion.hpp"
 #include "simulator/output.hpp"
+#include "simulator/sense_files.hpp"
 #include "simulator/truth.hpp"
 #include "simulator/truth_files.hpp"
 
@@ -46,6 +47,7 @@ class TumOutput : public Output {
     writer_.finish();
     saveJoints(folder_ / "joints.json", records_);
     saveEvents(folder_ / "events.json", simulation, records_);
+    saveSenses(folder_, simulation, static_cast<int>(records_.size()));
   }
 
  private:

@@ -100,6 +100,15 @@ void readTruth(YamlMap map, TruthConfig& truth) {
   map.finish();
 }
 
+void readImu(YamlMap map, ImuConfig& imu) {
+  imu.camera_m = map.vector3("camera_m", imu.camera_m);
+  imu.camera_rpy_rad =
+      map.vector3("camera_rpy_deg", imu.camera_rpy_rad * 180.0 / M_PI) * M_PI / 180.0;
+  YamlFields fields(map);
+  visitFields(imu, fields);
+  fields.finish();
+}
+
 /// Rooms and what stands in them, that of the file first.
 void readPlaces(YamlMap& map, Scenario& s) {
   for (auto& room : map.maps("rooms")) {
@@ -140,8 +149,9 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   }
   if (s.people.size() > 30) map.fail("people", "has more than 30 entries");
   readCamera(map.map("camera"), s);
-  YamlFields color(map.map("color")), depth(map.map("depth"));
+  YamlFields color(map.map("color")), depth(map.map("depth")), legs(map.map("legs"));
   visitFields(s.color, color);
+  visitFields(s.legs, legs);
   visitFields(s.depth, depth);
   if (!tree["depth"] || !tree["depth"]["specimen"]) {
     s.depth.specimen = static_cast<int>(s.seed % 1000001U);
@@ -149,6 +159,8 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   if (s.depth.min_m >= s.depth.max_m) map.fail("depth.min_m", "is not less than max_m");
   color.finish();
   depth.finish();
+  legs.finish();
+  readImu(map.map("imu"), s.imu);
   readTruth(map.map("truth"), s.truth);
   map.finish();
   return s;

@@ -10,6 +10,8 @@
 #include "simulator/color_config.hpp"
 #include "simulator/depth_config.hpp"
 #include "simulator/furniture.hpp"
+#include "simulator/imu_config.hpp"
+#include "simulator/legs_config.hpp"
 #include "simulator/script.hpp"
 
 namespace pf::simulator {
@@ -40,6 +42,8 @@ struct Scenario {
   ColorConfig color;
   DepthConfig depth;
   TruthConfig truth;
+  ImuConfig imu;
+  LegsConfig legs;
 };
 
 /// What the command line changes: "camera.period_s=3" sets a value of the file.

@@ -59,6 +59,18 @@ void Simulation::jump() {
   state_->exposure.restart();
 }
 
+TimeSpan Simulation::spanOf(int frames) const {
+  const Scenario& s = state_->scenario;
+  return {s.start_s, s.start_s + frames / s.fps + kAfter_s};
+}
+
+Senses Simulation::senses(int frames) const {
+  const Scenario& s = state_->scenario;
+  const TimeSpan span = spanOf(frames);
+  return {senseImu(*state_->path, s.imu, span, hash(s.seed, 81U)),
+          senseLegs(*state_->path, s.legs, span, hash(s.seed, 82U))};
+}
+
 Trajectory Simulation::truth(int frames) const {
   const State& s = *state_;
   const TruthConfig& c = s.scenario.truth;
@@ -85,8 +97,7 @@ Trajectory Simulation::truth(int frames) const {
 }
 
 std::vector<Event> Simulation::events(int frames) const {
-  const double from = state_->scenario.start_s;
-  const double to = from + frames / state_->scenario.fps + kAfter_s;
+  const auto [from, to] = spanOf(frames);
   std::vector<Event> events;
   for (const Event& e : state_->path->events()) {
     if (e.end_s <= from || e.start_s >= to) continue;
@@ -97,7 +108,7 @@ std::vector<Event> Simulation::events(int frames) const {
 
 std::vector<Visit> Simulation::visits(int frames) const {
   const Scenario& scenario = state_->scenario;
-  const double from = scenario.start_s, to = from + frames / scenario.fps + kAfter_s;
+  const auto [from, to] = spanOf(frames);
   std::vector<Visit> visits;
   for (double t = from; t < to; t += kVisitStep_s) {
     const Eigen::Vector2d at = state_->path->at(t).translation().head<2>();

@@ -9,6 +9,8 @@
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "simulator/color_sensor.hpp"
+#include "simulator/imu.hpp"
+#include "simulator/legs.hpp"
 #include "simulator/scenario.hpp"
 #include "simulator/world.hpp"
 
@@ -45,6 +47,12 @@ struct Visit {
   double end_s = 0.0;
 };
 
+/// What the robot's other sensors say.
+struct Senses {
+  std::vector<ImuSample> imu;
+  std::vector<LegSample> legs;
+};
+
 /// A scenario come alive. Frames are asked for in order, because the exposure follows the picture.
 class Simulation {
  public:
@@ -65,11 +73,16 @@ class Simulation {
   std::vector<Event> events(int frames) const;
   /// Which rooms the camera is in, in that time. A doorway belongs to the room before it.
   std::vector<Visit> visits(int frames) const;
+  /// What inertial sensor, legs and neck say in that time. They have random numbers of their own.
+  Senses senses(int frames) const;
   std::int64_t stampOf(double time_s) const;
   const World& world() const;
   const Scenario& scenario() const;
 
  private:
+  /// From the start to a little after the first `frames` frames.
+  TimeSpan spanOf(int frames) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_simulate: makes a recording of a simulated room with people.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <future>
 #include <iostream>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
 #include "posefusion/io/images.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "progress.hpp"
 #include "simulate_bag.hpp"
 #include "simulator/contact_sheet.hpp"
 #include "simulator/output.hpp"
 #include "simulator/scenario.hpp"
+#include "simulator/sense_files.hpp"
 #include "simulator/simulation.hpp"
 #include "tool.hpp"
 
@@ -30,6 +34,7 @@ struct Options {
   int sheet_frames = 8;
   int sheet_width = 400;
   bool list = false;
+  bool no_images = false;
   ScenarioChanges changes;
 };
 
@@ -47,6 +52,10 @@ void addOptions(CLI::App& app, Options& o) {
       ->check(CLI::Range(1, 200));
   app.add_option("--sheet-width", o.sheet_width, "width of a picture of it")
       ->check(CLI::Range(40, 2000));
+  app.add_flag(
+      "--no-images", o.no_images,
+      "into the folder, which may be there, only the true poses and what the other sensors "
+      "say: nothing is drawn");
   app.add_flag("--list", o.list, "names of the scenarios");
 }
 
@@ -64,9 +73,35 @@ void makeSheet(Simulation& simulation, const Options& o) {
   savePng(o.sheet, sheet);
 }
 
+bool isBag(const Options& o) { return std::filesystem::path(o.output).extension() == ".bag"; }
+
+/// Throws InputError where a folder has the truth of another recording.
+void expectSameTruth(const std::string& path, const Trajectory& truth) {
+  if (!std::filesystem::exists(path)) return;
+  const Trajectory there = loadTrajectory(path);
+  const bool same = std::equal(
+      there.begin(), there.end(), truth.begin(), truth.end(), [](const auto& a, const auto& b) {
+        return a.stamp_ns == b.stamp_ns && a.T_world_camera.isApprox(b.T_world_camera, 1e-6);
+      });
+  if (!same) {
+    throw InputError(path + ": is of another recording, expected one of this scenario and seed");
+  }
+}
+
+/// What needs no picture; beside the pictures too, where they are there.
+int recordWithoutImages(const Simulation& simulation, const Options& o) {
+  const int frames = simulation.frameCount();
+  const Trajectory truth = simulation.truth(frames);
+  const std::string path = std::filesystem::path(o.output) / "groundtruth.txt";
+  expectSameTruth(path, truth);
+  makeFolder(o.output);
+  saveTrajectory(path, truth, "camera to world");
+  saveSenses(o.output, simulation, frames);
+  return 0;
+}
+
 int record(Simulation& simulation, const Options& o) {
-  const bool bag = std::filesystem::path(o.output).extension() == ".bag";
-  const auto output = bag ? openBagOutput(o.output) : openTumOutput(o.output, simulation);
+  const auto output = isBag(o) ? openBagOutput(o.output) : openTumOutput(o.output, simulation);
   std::signal(SIGINT, askStop);
   std::signal(SIGTERM, askStop);
   int made = 0;
@@ -97,9 +132,13 @@ int simulate(const Options& options) {
   if (options.output.empty() && options.sheet.empty()) {
     throw CLI::RequiredError("--output or --contact-sheet");
   }
+  if (options.no_images && isBag(options)) {
+    throw InputError(options.output + ": is a bag, --no-images expects a folder");
+  }
   Simulation simulation(loadScenario(options.scenario, options.changes));
   if (!options.sheet.empty()) makeSheet(simulation, options);
-  return options.output.empty() ? 0 : record(simulation, options);
+  if (options.output.empty()) return 0;
+  return options.no_images ? recordWithoutImages(simulation, options) : record(simulation, options);
 }
 
 }  // namespace
