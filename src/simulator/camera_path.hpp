@@ -58,6 +58,10 @@ struct Fall {
   double lie_s = 3.0;
   double skip_m = 1.0;    ///< it gets up so far along its way
   double turn_rad = 0.8;  ///< and looks elsewhere by so much
+  double down_m = 0.0;    ///< down stairs: onto a floor so much lower
+  double ahead_m = 0.35;  ///< the head comes to lie so far before where it stood
+  double drop_s = 0.5;    ///< from losing its balance to the impact
+  int bumps = 0;          ///< on stairs, on the way down
 };
 
 /// Where a robot walks to, and where it faces on the way: there, unless it is said.
@@ -79,6 +83,7 @@ struct Robot {
   bool turns_body = true;  ///< faces where it goes; otherwise looks at `target`
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double height_m = 1.40;
+  double floor_m = 0.0;     ///< the floor that it begins on
   double pitch_rad = 0.12;  ///< downwards
   double speed_m_s = 0.28;
   double turn_rad_s = 0.5;

@@ -16,10 +16,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kFloorHeight_m = 0.24;
-/// Body and floor give way: the last part of a drop, and how quickly it is stopped.
+/// Body and floor give way: the last part of a drop.
 constexpr double kCrush = 0.107;
-constexpr double kStop_s = 0.5 * kCrush / (1.0 - kCrush) * kDrop_s;  // no jump of the speed
 constexpr double kOnset_s = 0.02;  // of what rings through the body
+
+/// How quickly a drop is stopped, so that there is no jump of the speed.
+double stopOf(const Fall& fall) { return 0.5 * kCrush / (1.0 - kCrush) * fall.drop_s; }
 
 double smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -53,7 +55,7 @@ class RobotPath : public CameraPath {
     const Vector2d place = piece.from.at + part * (piece.to.at - piece.from.at);
     const double yaw = piece.from.yaw + part * (piece.to.yaw - piece.from.yaw);
     const bool moving = piece.kind != Piece::Kind::pause;
-    const Isometry3d T = standing(place, yaw) * balance(t, 1.0);
+    const Isometry3d T = standing({place, yaw, piece.to.floor_m}) * balance(t, 1.0);
     return moving ? T * gait(piece, since) : T;
   }
 
@@ -78,10 +80,11 @@ class RobotPath : public CameraPath {
     return (x - 0.5 * ramp) / area;
   }
 
-  Isometry3d standing(const Vector2d& place, double yaw) const {
-    const Vector3d eye(place.x(), place.y(), spec_.height_m);
+  Isometry3d standing(const Place& place) const {
+    const Vector3d eye(place.at.x(), place.at.y(), place.floor_m + spec_.height_m);
     if (!spec_.turns_body) return lookAt(eye, spec_.target);
-    return lookAt(eye, eye + Vector3d(std::cos(yaw), std::sin(yaw), -std::tan(spec_.pitch_rad)));
+    return lookAt(
+        eye, eye + Vector3d(std::cos(place.yaw), std::sin(place.yaw), -std::tan(spec_.pitch_rad)));
   }
 
   static Isometry3d moved(const Vector3d& by, const Vector3d& turn) {
@@ -132,8 +135,8 @@ class RobotPath : public CameraPath {
   Isometry3d lying(const Piece& piece) const {
     const Vector2d ahead(std::cos(piece.from.yaw), std::sin(piece.from.yaw));
     const double sign = piece.fall.direction == "backward" ? -1.0 : 1.0;
-    Isometry3d T = standing(piece.from.at + sign * 0.35 * ahead, piece.from.yaw);
-    T.translation().z() = kFloorHeight_m;
+    Isometry3d T = standing({piece.from.at + sign * piece.fall.ahead_m * ahead, piece.from.yaw});
+    T.translation().z() = piece.to.floor_m + kFloorHeight_m;
     if (piece.fall.direction == "forward") T.rotate(AngleAxisd(-1.15, Vector3d::UnitX()));
     if (piece.fall.direction == "backward") T.rotate(AngleAxisd(1.25, Vector3d::UnitX()));
     if (piece.fall.direction == "sideways") T.rotate(AngleAxisd(1.35, Vector3d::UnitZ()));
@@ -148,23 +151,37 @@ class RobotPath : public CameraPath {
     return T;
   }
 
+  /// Each edge of the stairs gives the body a knock, to one side and the other.
+  static void addBumps(const Fall& fall, double since_s, Isometry3d& T) {
+    for (int i = 0; i < fall.bumps; ++i) {
+      const double after_s = since_s - fall.drop_s * (i + 1.0) / (fall.bumps + 1.0);
+      if (after_s <= 0.0) continue;
+      const double knock = ringing(after_s, 0.10, 42.0), side = i % 2 == 0 ? 1.0 : -1.0;
+      T.translate(Vector3d(0.010 * side * knock, -0.020 * knock, 0.0));
+      T.rotate(AngleAxisd(0.10 * knock, Vector3d::UnitX()) *
+               AngleAxisd(0.12 * side * knock, Vector3d::UnitZ()));
+    }
+  }
+
   Isometry3d fallen(const Piece& piece, double since) const {
-    const Isometry3d up = standing(piece.from.at, piece.from.yaw), down = lying(piece);
-    const Isometry3d again = standing(piece.to.at, piece.to.yaw);
-    const double impact = since - kStagger_s - kDrop_s;
+    const Isometry3d up = standing(piece.from), down = lying(piece);
+    const Isometry3d again = standing(piece.to);
+    const double impact = since - kStagger_s - piece.fall.drop_s;
     if (impact < 0.0) {
       // It tips slowly, then gravity takes over.
       const double tip = 0.10 * std::pow(std::min(1.0, since / kStagger_s), 2.0);
-      const double drop = std::max(0.0, (since - kStagger_s) / kDrop_s);
+      const double drop = std::max(0.0, (since - kStagger_s) / piece.fall.drop_s);
       Isometry3d T = mix(up, down, tip + (1.0 - tip) * (1.0 - kCrush) * drop * drop);
       T.rotate(AngleAxisd(0.05 * std::sin(18.0 * since) * since * (1.0 - drop), Vector3d::UnitZ()));
+      addBumps(piece.fall, since - kStagger_s, T);
       return T;
     }
     const double rise = smooth((impact - piece.fall.lie_s) / kGetUp_s);
-    const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / kStop_s);
+    const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / stopOf(piece.fall));
     Isometry3d T = mix(mix(up, down, crushed), again, rise);
     const double hop = std::sin(14.0 * impact);
     T.translate(Vector3d(0.0, -0.05 * std::exp(-impact / 0.16) * hop * hop, 0.0));
+    addBumps(piece.fall, since - kStagger_s, T);
     const double effort = 4.0 * rise * (1.0 - rise);
     T.rotate(AngleAxisd(0.16 * ringing(impact, 0.16, 40.0) +
                             0.10 * effort * tremble(since, 0.5, 5.0, seed_ + 31U),

@@ -42,6 +42,7 @@ const std::map<std::string, Kind>& kinds() {
       {"lamp", {addLamp, {0.35F, 0.35F, 1.6F}, "plastic", true}},
       {"curtain", {addCurtain, {0.1F, 1.4F, 2.2F}, "cloth", false}},
       {"bag", {addBag, {0.2F, 0.32F, 0.45F}, "cloth", true}},
+      {"stairs", {addStairs, {0.84F, 1.6F, 0.68F}, "concrete", true}},
       {"monitor", {addMonitor, {0.2F, 0.52F, 0.42F}, "screen", false}},
       {"clutter", {addClutter, {0.5F, 0.8F, 0.25F}, "plastic", false}},
       {"poster", {addHanging, {0.006F, 0.6F, 0.85F}, "poster", false}},

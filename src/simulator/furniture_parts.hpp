@@ -56,5 +56,6 @@ void addCoatRack(const Part& part);
 void addLamp(const Part& part);
 void addCurtain(const Part& part);
 void addBag(const Part& part);
+void addStairs(const Part& part);
 
 }  // namespace pf::simulator

@@ -51,6 +51,18 @@ void addShelf(const Part& p) {
   }
 }
 
+void addStairs(const Part& p) {
+  // The uppermost step is the floor that they lead to.
+  const auto material = p.material();
+  const int steps = std::max(2, static_cast<int>(std::lround(p.size.z() / 0.17F)));
+  const float tread = p.size.x() / static_cast<float>(steps - 1);
+  for (int i = 1; i < steps; ++i) {
+    const float height = p.size.z() * static_cast<float>(steps - i) / static_cast<float>(steps);
+    const float x = -0.5F * p.size.x() + (static_cast<float>(i) - 0.5F) * tread;
+    p.box(material, {x, 0, 0.5F * height}, {tread, p.size.y(), height});
+  }
+}
+
 void addCabinet(const Part& p) {
   const auto front = p.material();
   const auto body = p.material("plastic", p.tint.cwiseProduct(Vector3f(0.85F, 0.85F, 0.83F)));

@@ -17,6 +17,7 @@ class Planner {
   std::vector<Piece> plan() {
     const Waypoint& first = spec_.waypoints[0];
     place_.at = first.at;
+    place_.floor_m = spec_.floor_m;
     const Vector2d ahead = spec_.waypoints[1 % spec_.waypoints.size()].at - place_.at;
     const double yaw = ahead.norm() > 0.0 ? std::atan2(ahead.y(), ahead.x()) : 0.0;
     place_.yaw = first.facing_rad.value_or(yaw);
@@ -55,7 +56,7 @@ class Planner {
     const double angle = std::remainder(yaw - place_.yaw, 2.0 * M_PI);
     if (std::abs(angle) < 0.02) return;
     const double time = std::max(spec_.step_s, std::abs(angle) / spec_.turn_rad_s);
-    add(Piece::Kind::turn, time, {place_.at, place_.yaw + angle});
+    add(Piece::Kind::turn, time, {place_.at, place_.yaw + angle, place_.floor_m});
   }
 
   /// Walks on towards a waypoint; false when a fall came between.
@@ -68,17 +69,18 @@ class Planner {
     const bool falls =
         next_fall_ < spec_.falls.size() && spec_.falls[next_fall_].at_s < time_s_ + time;
     if (!falls) {
-      add(Piece::Kind::walk, time, {goal, place_.yaw});
+      add(Piece::Kind::walk, time, {goal, place_.yaw, place_.floor_m});
       if (spec_.pause_s > 0.0) add(Piece::Kind::pause, spec_.pause_s, place_);
       return true;
     }
     const Fall& fall = spec_.falls[next_fall_++];
     const double until = std::max(spec_.step_s, fall.at_s - time_s_);
     const double part = std::min(1.0, until / time);
-    add(Piece::Kind::walk, until, {place_.at + part * d, place_.yaw});
+    add(Piece::Kind::walk, until, {place_.at + part * d, place_.yaw, place_.floor_m});
     const double skip = std::min(fall.skip_m, (1.0 - part) * d.norm());
-    const Place up{place_.at + skip * d.normalized(), place_.yaw + fall.turn_rad};
-    add(Piece::Kind::fall, kStagger_s + kDrop_s + fall.lie_s + kGetUp_s, up);
+    const Place up{place_.at + skip * d.normalized(), place_.yaw + fall.turn_rad,
+                   place_.floor_m - fall.down_m};
+    add(Piece::Kind::fall, kStagger_s + fall.drop_s + fall.lie_s + kGetUp_s, up);
     pieces_.back().fall = fall;
     add(Piece::Kind::pause, 1.0, place_);
     return (goal - place_.at).norm() < 0.02;

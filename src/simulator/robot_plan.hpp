@@ -8,15 +8,15 @@
 
 namespace pf::simulator {
 
-// Phases of a fall before it lies and after.
+// Phases of a fall before it drops and after it has lain.
 constexpr double kStagger_s = 0.45;
-constexpr double kDrop_s = 0.50;
 constexpr double kGetUp_s = 2.6;
 
 /// Where a robot stands and where it faces.
 struct Place {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double yaw = 0.0;
+  double floor_m = 0.0;
 };
 
 /// A piece of the robot's time.

@@ -64,6 +64,7 @@ Robot readRobot(YamlMap& map) {
   r.turns_body = !map.has("look_at_m");
   r.target = map.vector3("look_at_m", r.target);
   r.height_m = map.number("height_m", r.height_m, 0.3, 2.2);
+  r.floor_m = map.number("floor_m", r.floor_m, 0.0, 10.0);
   r.pitch_rad = map.angle("pitch_deg", r.pitch_rad);
   r.speed_m_s = map.number("speed_m_s", r.speed_m_s, 0.02, 2.0);
   r.turn_rad_s = map.angle("turn_deg_s", r.turn_rad_s);
@@ -83,6 +84,10 @@ Robot readRobot(YamlMap& map) {
     fall.lie_s = entry.number("lie_s", 3.0, 0.0, 60.0);
     fall.skip_m = entry.number("skip_m", 1.0, 0.0, 20.0);
     fall.turn_rad = entry.angle("turn_deg", 45.0 * M_PI / 180.0);
+    fall.down_m = entry.number("down_m", fall.down_m, -10.0, 10.0);
+    fall.ahead_m = entry.number("ahead_m", fall.ahead_m, 0.0, 10.0);
+    fall.drop_s = entry.number("drop_s", fall.drop_s, 0.2, 10.0);
+    fall.bumps = entry.integer("bumps", fall.bumps, 0, 100);
     entry.finish();
     r.falls.push_back(fall);
   }
