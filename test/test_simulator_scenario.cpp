@@ -20,10 +20,27 @@ bool contains(const std::string& text, const std::string& part) {
 const std::string kRoom = "rooms: [{size_m: [4, 4, 2.5]}]\n";
 
 TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
-  for (const char* name :
-       {"walking_static", "walking_xyz", "walking_rpy", "walking_halfsphere", "sitting_static",
-        "sitting_xyz", "sitting_halfsphere", "loop_room", "hrpslam1", "hrpslam2", "fall_short",
-        "empty_room", "crowd", "empty_box", "box_walker", "floor", "floor_light"}) {
+  for (const char* name : {"walking_static",
+                           "walking_xyz",
+                           "walking_rpy",
+                           "walking_halfsphere",
+                           "sitting_static",
+                           "sitting_xyz",
+                           "sitting_halfsphere",
+                           "loop_room",
+                           "hrpslam1",
+                           "hrpslam2",
+                           "fall_short",
+                           "empty_room",
+                           "crowd",
+                           "empty_box",
+                           "box_walker",
+                           "floor",
+                           "floor_light",
+                           "corridor",
+                           "corridor_light",
+                           "stairs_fall",
+                           "stairs_fall_light"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;
@@ -40,8 +57,8 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
 
 TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
   // The others have the people and the rooms of one of these.
-  for (const char* name :
-       {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd", "box_walker"}) {
+  for (const char* name : {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd",
+                           "box_walker", "stairs_fall"}) {
     const Scenario s = loadScenario(name);
     World world;
     for (const auto& room : s.rooms) addRoom(world, room, 1U);

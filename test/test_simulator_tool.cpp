@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_simulate as a user runs it: stopped, short of space, with bad outputs.
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/Imu.h>
 #include <sys/resource.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "posefusion/io/files.hpp"
 #include "posefusion/io/frame_source.hpp"
+#include "posefusion/io/trajectory_file.hpp"
 #include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/conversions.hpp"
 #include "program.hpp"
 #include "simulator_scene.hpp"
 
@@ -105,6 +113,69 @@ TEST_F(SimulatorToolTest, AStoppedBagIsWholeAndHasTheTruthOfItsFrames) {
   const auto source = posefusion_ros::openBag(own / "out.bag");
   ASSERT_GT(source->frameCount(), 5U);
   expectTruthOfTheFrames(*source);
+}
+
+TEST_F(SimulatorToolTest, WithoutImagesOnlyTheTruthAndTheOtherSensorsAreWritten) {
+  const auto into = [&](const std::string& output, const std::vector<std::string>& changes = {}) {
+    std::vector<std::string> arguments{scene(), "--duration", "1", "--no-images", "--output"};
+    arguments.push_back(own / output);
+    arguments.insert(arguments.end(), changes.begin(), changes.end());
+    return run(arguments);
+  };
+  EXPECT_EQ(into("out"), 0) << said;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(own / "out")) {
+    names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"base_camera.txt", "groundtruth.txt", "head_joints.csv",
+                                      "imu.csv", "imu.yaml", "odometry.txt"}));
+  const std::string before = readFile(own / "out/imu.csv");
+  EXPECT_EQ(into("out", {"--seed", "9"}), 1);
+  EXPECT_TRUE(hasSaid("groundtruth.txt: is of another recording")) << said;
+  EXPECT_EQ(readFile(own / "out/imu.csv"), before);
+  EXPECT_EQ(into("out", {"--set", "imu.rate_hz=100"}), 0) << said;
+  EXPECT_LT(readFile(own / "out/imu.csv").size(), before.size());
+  EXPECT_EQ(into("out.bag"), 1);
+  EXPECT_TRUE(hasSaid("out.bag: is a bag, --no-images expects a folder")) << said;
+}
+
+TEST_F(SimulatorToolTest, ABagSaysOfTheOtherSensorsWhatAFolderSays) {
+  for (const char* output : {"out", "out.bag"}) {
+    ASSERT_EQ(run({scene(), "--duration", "0.3", "--output", own / output}), 0) << said;
+  }
+  const Trajectory odometry = loadTrajectory(own / "out/odometry.txt"),
+                   neck = loadTrajectory(own / "out/base_camera.txt");
+  rosbag::Bag bag(own / "out.bag");
+  std::map<std::string, std::size_t> counts;
+  std::size_t poses = 0;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    ++counts[message.getTopic()];
+    if (const auto imu = message.instantiate<sensor_msgs::Imu>()) {
+      EXPECT_EQ(imu->header.frame_id, "imu_link");
+      EXPECT_EQ(imu->orientation_covariance[0], -1.0);
+    }
+    const auto tf = message.instantiate<tf2_msgs::TFMessage>();
+    if (!tf || tf->transforms[0].header.frame_id != "odom") continue;
+    ASSERT_LT(poses, odometry.size());
+    ASSERT_EQ(tf->transforms.size(), 3U);
+    EXPECT_EQ(tf->transforms[1].header.frame_id, "base_link");
+    EXPECT_EQ(tf->transforms[1].child_frame_id, "camera_rgb_optical_frame");
+    EXPECT_EQ(tf->transforms[2].child_frame_id, "imu_link");
+    EXPECT_EQ(posefusion_ros::toNs(tf->transforms[0].header.stamp), odometry[poses].stamp_ns);
+    for (const auto& [part, pose] : {std::pair(0, odometry[poses]), std::pair(1, neck[poses])}) {
+      const auto& t = tf->transforms[static_cast<std::size_t>(part)].transform.translation;
+      const Eigen::Vector3d told(t.x, t.y, t.z);
+      EXPECT_LT((told - pose.T_world_camera.translation()).norm(), 1e-7);
+    }
+    ++poses;
+  }
+  EXPECT_EQ(poses, odometry.size());
+  EXPECT_EQ(counts["/odom"], odometry.size());
+  EXPECT_EQ(counts["/joint_states"], odometry.size());
+  EXPECT_EQ(counts["/imu/data"], 71U);
+  EXPECT_EQ(counts["/tf"], counts["/truth"] + odometry.size());
 }
 
 TEST_F(SimulatorToolTest, AFullDiskLeavesNoPartOfABag) {
