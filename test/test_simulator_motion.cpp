@@ -214,6 +214,37 @@ TEST(SimulatorMotion, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
   EXPECT_GT(std::acos(before.linear().col(2).dot(after.linear().col(2))), 0.6);
 }
 
+TEST(SimulatorMotion, RobotsFallDownStairsAndGetUpBelow) {
+  Robot spec;
+  spec.waypoints = {{1, 1}, {6, 1}, {6, 5}};
+  spec.floor_m = 0.68;
+  Fall fall;
+  fall.at_s = 9.0;
+  fall.down_m = 0.68;
+  fall.ahead_m = 1.6;
+  fall.drop_s = 0.7;
+  fall.bumps = 3;
+  fall.skip_m = 2.2;
+  spec.falls = {fall};
+  const auto path = makeRobot(spec, 30.0, 3U);
+  ASSERT_EQ(path->events().size(), 1U);
+  const Event event = path->events()[0];
+  const Eigen::Vector3d before = path->at(event.start_s - 0.1).translation(),
+                        lying = path->at(event.start_s + 3.0).translation(),
+                        after = path->at(event.end_s + 0.2).translation();
+  EXPECT_NEAR(before.z(), 0.68 + spec.height_m, 0.05);
+  EXPECT_NEAR(lying.z(), 0.24, 0.05);
+  EXPECT_NEAR(lying.x() - before.x(), 1.6, 0.1);
+  EXPECT_NEAR(after.z(), spec.height_m, 0.05);
+  EXPECT_NEAR(after.x() - before.x(), 2.2, 0.15);
+  EXPECT_NEAR(path->at(29.0).translation().z(), spec.height_m, 0.05);
+  const Extremes falling = extremesOf(*path, 30.0);
+  EXPECT_LT(falling.speed_m_s, 8.0);
+  EXPECT_LT(falling.turn_rad_s, 12.0);
+  EXPECT_GT(falling.acceleration_m_s2, 60.0);
+  EXPECT_LT(falling.acceleration_m_s2, 300.0);
+}
+
 TEST(SimulatorMotion, RobotsFaceElsewhereWhenTheyAreTold) {
   Robot spec;
   spec.waypoints = {{1, 1}, {Vector2d(5, 1), -M_PI_2}, {5, 3}};

@@ -2,6 +2,8 @@
 // Scene files: the package's own are good, bad ones are refused with the place of the mistake.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "simulator/furniture.hpp"
 #include "simulator/scene_check.hpp"
 #include "simulator_scene.hpp"
@@ -65,6 +67,30 @@ TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
     for (const auto& object : s.objects) addObject(world, object);
     EXPECT_EQ(errorOf([&] { checkScene(s, world); }), "") << name;
   }
+}
+
+TEST(SimulatorScenario, TheCorridorsBareWallIsCloseForAWhile) {
+  const Simulation simulation(loadScenario("corridor_light"));
+  const int frames = simulation.frameCount();
+  double close_s = 0.0;
+  for (const StampedPose& pose : simulation.truth(frames)) {
+    const double wall_m = pose.T_world_camera.translation().y();
+    const bool faces_it = pose.T_world_camera.linear()(1, 2) < -0.95;
+    close_s += faces_it && wall_m > 0.0 && wall_m < 0.62 ? 0.005 : 0.0;
+  }
+  EXPECT_GT(close_s, 12.0);
+  std::set<std::string> rooms;
+  for (const Visit& visit : simulation.visits(frames)) rooms.insert(visit.room);
+  EXPECT_EQ(rooms, (std::set<std::string>{"corridor", "kitchen", "library", "office"}));
+}
+
+TEST(SimulatorScenario, TheFallDownStairsEndsAFloorLower) {
+  const Simulation simulation(loadScenario("stairs_fall_light"));
+  const auto events = simulation.events(simulation.frameCount());
+  ASSERT_EQ(events.size(), 2U);
+  const Trajectory truth = simulation.truth(simulation.frameCount());
+  EXPECT_NEAR(truth.front().T_world_camera.translation().z(), 2.06, 0.05);
+  EXPECT_NEAR(truth.back().T_world_camera.translation().z(), 1.38, 0.05);
 }
 
 TEST(SimulatorScenario, TheCameraIsThatOfTheSeedUnlessItIsNamed) {

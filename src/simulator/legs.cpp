@@ -32,6 +32,15 @@ struct Motion {
   double turn_rad = 0.0;
 };
 
+/// A motion between two samples.
+struct Step {
+  Motion truth;  ///< in the frame that the body believes to be the world
+  double end_s = 0.0;
+  double length_s = 0.0;
+  double walked_m = 0.0;  ///< of it, so much is no balance
+  std::uint32_t index = 0;
+};
+
 /// Of what is drawn anew with every step.
 LegVariance driftOf(const LegsConfig& c, double way_m, double turned_rad) {
   return {square(c.drift_m_per_m) * way_m,
@@ -48,33 +57,32 @@ class Belief {
     turn_scale_ = 1.0 + 0.01 * c_.turn_percent * between(hash(seed_, kTurn), -1.0, 1.0);
   }
 
-  /// Of a motion over `step_s` that ends at `t`, in the believed frame. `walked_m` of it are no
-  /// balance.
-  Motion of(const Motion& truth, double t, double step_s, double walked_m, std::uint32_t index) {
+  Motion of(const Step& step) const {
     for (std::size_t i = 0; c_.falls_confuse && i < falls_.size(); ++i) {
-      if (t <= falls_[i].start_s || t > falls_[i].end_s) continue;
-      return inFall(falls_[i], hash(seed_, kFall, static_cast<std::uint32_t>(i)), t, step_s);
+      if (step.end_s <= falls_[i].start_s || step.end_s > falls_[i].end_s) continue;
+      return inFall(step, falls_[i], hash(seed_, kFall, static_cast<std::uint32_t>(i)));
     }
-    Motion told = truth;
+    Motion told = step.truth;
     told.way_m.head<2>() *= scale_;
     told.turn_rad *= turn_scale_;
-    const LegVariance spread = driftOf(c_, walked_m, std::abs(truth.turn_rad));
+    const LegVariance spread = driftOf(c_, step.walked_m, std::abs(step.truth.turn_rad));
     for (std::uint32_t k = 0; k < 3; ++k) {
-      told.way_m[k] += std::sqrt(spread.place_m2) * gaussian(hash(seed_, kDrift, index, k));
+      told.way_m[k] += std::sqrt(spread.place_m2) * gaussian(hash(seed_, kDrift, step.index, k));
     }
-    told.turn_rad += std::sqrt(spread.heading_rad2) * gaussian(hash(seed_, kHeading, index));
+    told.turn_rad += std::sqrt(spread.heading_rad2) * gaussian(hash(seed_, kHeading, step.index));
     return told;
   }
 
   /// A step that is not there: ahead of the body, and about it.
-  Motion slip(double t, double step_s) const {
-    if (c_.slip_every_s <= 0.0) return {};
+  Motion slipIn(const Step& step) const {
+    const double t = step.end_s;
+    if (c_.slip_every_s <= 0.0 || step.walked_m <= 0.0) return {};
     const auto window = static_cast<std::uint32_t>(std::max(0.0, t) / c_.slip_every_s);
     const double longest = std::max(0.0, c_.slip_every_s - kSlip_s);
     const double begin =
         window * c_.slip_every_s + between(hash(seed_, kSlip, window), 0.0, longest);
     if (t < begin || t >= begin + kSlip_s) return {};
-    const double part = step_s / kSlip_s;
+    const double part = step.length_s / kSlip_s;
     const double length = between(hash(seed_, kSlip, window, 1U), 0.3, 1.0) * c_.slip_m;
     const double angle =
         between(hash(seed_, kSlipTurn, window), -1.0, 1.0) * c_.slip_deg * kRadians;
@@ -82,11 +90,11 @@ class Belief {
   }
 
  private:
-  Motion inFall(const Event& fall, std::uint32_t luck, double t, double step_s) const {
+  Motion inFall(const Step& step, const Event& fall, std::uint32_t luck) const {
     switch (luck % 3U) {
       case 0: {  // the legs thrash about
         const auto shake = [&](std::uint32_t salt) {
-          return step_s * tremble(t, 0.3, 3.0, hash(luck, salt));
+          return step.length_s * tremble(step.end_s, 0.3, 3.0, hash(luck, salt));
         };
         return {c_.fall_m_s * Vector3d(shake(1U), shake(2U), 0.0),
                 c_.fall_deg_s * kRadians * shake(3U)};
@@ -95,7 +103,7 @@ class Belief {
         return {};
       default: {  // the body is suddenly elsewhere
         const double when = between(hash(luck, 4U), fall.start_s + 0.3, fall.end_s - 0.1);
-        if (when <= t - step_s || when > t) return {};
+        if (when <= step.end_s - step.length_s || when > step.end_s) return {};
         const double direction = between(hash(luck, 5U), 0.0, 2.0 * M_PI);
         const double part = between(hash(luck, 6U), 0.5, 1.0);
         return {part * c_.fall_jump_m * Vector3d(std::cos(direction), std::sin(direction), 0.0),
@@ -134,21 +142,17 @@ class Counter {
   };
 
   void advance(double t, const Isometry3d& T_world_base, double heading, std::uint32_t index) {
-    const double step_s = t - before_->time_s;
-    Motion truth;
-    truth.way_m = T_world_base.translation() - before_->T_world_base.translation();
-    truth.turn_rad =
+    const Vector3d way_m = T_world_base.translation() - before_->T_world_base.translation();
+    const double turn_rad =
         std::remainder(heading - headingOf(before_->T_world_base.linear()), 2.0 * M_PI);
-    const double length_m = truth.way_m.head<2>().norm();
-    const double walked_m = length_m > kStepping_m_s * step_s ? length_m : 0.0;
-    // From here on in the frame that the body believes to be the world.
-    truth.way_m = turned(off_rad_, truth.way_m);
-    const Motion told = belief_.of(truth, t, step_s, walked_m, index);
-    const Motion slip = walked_m > 0.0 ? belief_.slip(t, step_s) : Motion();
-    off_rad_ += told.turn_rad + slip.turn_rad - truth.turn_rad;
+    Step step{{turned(off_rad_, way_m), turn_rad}, t, t - before_->time_s, 0.0, index};
+    const double length_m = way_m.head<2>().norm();
+    if (length_m > kStepping_m_s * step.length_s) step.walked_m = length_m;
+    const Motion told = belief_.of(step), slip = belief_.slipIn(step);
+    off_rad_ += told.turn_rad + slip.turn_rad - turn_rad;
     sample_.T_odom_base.translation() += told.way_m + turned(off_rad_ + heading, slip.way_m);
-    sample_.way_m += walked_m;
-    sample_.turned_rad += std::abs(truth.turn_rad);
+    sample_.way_m += step.walked_m;
+    sample_.turned_rad += std::abs(turn_rad);
   }
 
   Belief belief_;
