@@ -55,9 +55,9 @@ TEST(ExpectedPlace, AdmitsWhereTheCameraCanBeAndNothingElse) {
 }
 
 TEST(ExpectedPlace, AllowsForTheDriftOfTheMapInBetween) {
-  // Back where the walk began, which the map has at 0.8 m beside.
+  // Back where the walk began, which the map has at 0.65 m beside.
   const PoseGraph graph = graphOf(corridor());
-  const Eigen::Isometry3d beside = motion(0.8, 0, 0, 0);
+  const Eigen::Isometry3d beside = motion(0.65, 0, 0, 0);
   const ExpectedPlace late(graph, reckoned(59, beside, 0.02));
   EXPECT_TRUE(late.admits({kFirstFragment, poseOf(graph, 0) * motion(0, 0, 0, 3.0)}))
       << "60 steps ago";

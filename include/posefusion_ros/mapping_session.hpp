@@ -56,6 +56,11 @@ class MappingSession {
   const pf::Mapper& mapper() const { return *mapper_; }
   const pf::LoopExchange& loops() const { return loops_; }
   const MapSaver& saver() const { return saver_; }
+  /// See Mapper. @{
+  void addOdometry(const pf::StampedPose& pose) { mapper_->addOdometry(pose); }
+  void addImu(const pf::ImuSample& sample) { mapper_->addImu(sample); }
+  /// @}
+
   /// See Mapper.
   void place(const Eigen::Isometry3d& T_world_map) { mapper_->place(T_world_map); }
   /// From the next frame on, for this map and those after it.

@@ -16,6 +16,7 @@
 #include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/pose_output.hpp"
+#include "posefusion_ros/robot_input.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/status_output.hpp"
 #include "posefusion_ros/worker.hpp"
@@ -58,6 +59,7 @@ class FusionNodelet : public ChainNodelet {
     Parameters parameters(getPrivateNodeHandle());
     const MappingSettings settings = readMapping(parameters);
     const PoseOutputSettings poses = readPoseOutput(parameters, settings.lossless);
+    const RobotInputSettings robot = readRobotInput(parameters, poses.odom_frame);
     map_frame_ = poses.map_frame;
     is_lossless_ = settings.lossless;
     const int queue = parameters.integer("queue_size", 3, {1, 10000});
@@ -81,6 +83,7 @@ class FusionNodelet : public ChainNodelet {
         worker_->post([this, now] { pose_output_->hold(now); });
       });
     }
+    robot_ = std::make_unique<RobotInput>(handle, robot);
     rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
     input_ = std::make_unique<FusionInput>(handle, [this](const Set& set) { onSet(set); });
     // A chain that is lossless waits for the closer too, so that the first answer is not missed.
@@ -153,6 +156,8 @@ class FusionNodelet : public ChainNodelet {
   void fuse(const Set& set) {
     const std_msgs::Header& header = FusionInput::headerOf(set);
     const int version = session_->mapper().backEnd().graph().version();
+    const std::string deaf = robot_->tell(header, *session_);
+    if (!deaf.empty()) NODELET_WARN_THROTTLE(30.0, "%s", deaf.c_str());
     std::string trouble;
     const FrameStatus status = session_->process(toStaticFrame(set), header.frame_id, trouble);
     tell(session_->takeNotices());
@@ -247,6 +252,7 @@ class FusionNodelet : public ChainNodelet {
   std::unique_ptr<PoseOutput> pose_output_;
   StatusOutput status_;
   std::unique_ptr<TransformHold> hold_;
+  std::unique_ptr<RobotInput> robot_;
   std::unique_ptr<Worker<Set>> worker_;
   std::unique_ptr<FusionInput> input_;
   ros::Subscriber rejected_;

@@ -101,6 +101,20 @@ std::optional<MotionPrior> ImuTrack::between(std::int64_t from_ns, std::int64_t 
   return prior;
 }
 
+std::optional<Eigen::Vector3d> ImuTrack::feltBetween(std::int64_t from_ns,
+                                                     std::int64_t to_ns) const {
+  if (isFalling(to_ns)) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const ImuSample& sample : samples_) {
+    if (sample.stamp_ns <= from_ns || sample.stamp_ns > to_ns) continue;
+    sum += sample.acceleration_m_s2;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector3d(sum / count);
+}
+
 void ImuTrack::learnBias(std::int64_t from_ns, std::int64_t to_ns,
                          const Eigen::Matrix3d& R_before_after) {
   const auto turn = turnBetween(from_ns, to_ns, Eigen::Vector3d::Zero());

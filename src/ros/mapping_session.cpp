@@ -22,8 +22,8 @@ pf::AnswerTime answerTime(bool lossless) {
 
 MappingSettings readMapping(Parameters& parameters) {
   MappingSettings s;
-  s.config =
-      parameters.config({"sensor", "frame", "tracking", "map", "loop", "graph", "calibration"});
+  s.config = parameters.config(
+      {"sensor", "frame", "tracking", "robot", "map", "loop", "graph", "calibration"});
   s.lossless = parameters.flag("lossless", false);
   s.saver = readMapSaver(parameters);
   s.saver.settings = pf::toYaml(s.config);

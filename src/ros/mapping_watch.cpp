@@ -51,6 +51,17 @@ void noteDepth(const MappingSession& session, StageWatch& watch) {
   watch.set("depth correction at 2 m (mm)", amount_mm);
 }
 
+void noteRobot(const char* name, const pf::MotionSourceReport& report, StageWatch& watch) {
+  if (report.received == 0) return;
+  const std::string prefix = std::string(name) + " ";
+  watch.set(prefix + "believed", report.is_believed ? "yes" : "no");
+  watch.set(prefix + "received", std::to_string(report.received));
+  watch.set(prefix + "left out", std::to_string(report.left_out));
+  if (report.left_out > 0) watch.set(prefix + "left out, why", report.why_left_out);
+  watch.set(prefix + "motions told", std::to_string(report.told));
+  watch.set(prefix + "motions missing", std::to_string(report.missing));
+}
+
 }  // namespace
 
 void MappingWatch::note(const pf::FrameStatus& status, const MappingSession& session,
@@ -77,6 +88,8 @@ void MappingWatch::note(const pf::FrameStatus& status, const MappingSession& ses
   watch.set("lost for (s)", lost_s);
   noteMap(status, session, watch);
   noteDepth(session, watch);
+  noteRobot("odometry", session.mapper().robot().odometry(), watch);
+  noteRobot("imu", session.mapper().robot().imu(), watch);
 }
 
 }  // namespace posefusion_ros

@@ -74,6 +74,10 @@ void Mapper::State::tellRobot(const Location& location, const std::optional<MapP
   }
   robot.compare(before_ns, last_stamp_ns, before->T_map_camera.inverse() * location.T_map_camera,
                 location.covariance);
+  const auto felt = robot.feltBetween(before_ns, last_stamp_ns);
+  if (!felt || location.fragment != kFirstFragment) return;
+  gravity.add(location.T_map_camera.linear() * *felt,
+              1e-9 * static_cast<double>(last_stamp_ns - before_ns));
 }
 
 void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
@@ -206,7 +210,15 @@ void Mapper::place(const Eigen::Isometry3d& T_world_map) { state_->T_world_map =
 const std::optional<Eigen::Isometry3d>& Mapper::placed() const { return state_->T_world_map; }
 
 Eigen::Isometry3d Mapper::worldFromMap() const {
-  return state_->T_world_map.value_or(bodyFromOptical());
+  return state_->worldFromMap().value_or(bodyFromOptical());
+}
+
+/// As it was told, or as gravity has it; nothing where neither is known.
+std::optional<Eigen::Isometry3d> Mapper::State::worldFromMap() const {
+  if (T_world_map) return T_world_map;
+  const auto up = gravity.up();
+  if (!up) return std::nullopt;
+  return levelFromMap(*up);
 }
 
 void Mapper::set(const TrackingConfig& tracking) {
@@ -238,6 +250,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.views.clear();
   s.retired.clear();
   s.reckoning.reset();
+  s.gravity = {};
   s.rooms.clear();
   s.next_room = 0;
   s.map_at_loss.reset();

@@ -72,7 +72,7 @@ SavedMap Mapper::saved(const PinholeCamera& camera) const {
   saved.brightness = s.localiser.brightness();
   saved.surfels = s.map.parts();
   saved.frame = s.map.frame();
-  saved.T_world_map = s.T_world_map;
+  saved.T_world_map = s.worldFromMap();
   saved.keyframes = graph.keyframes();
   saved.constraints = graph.keptConstraints();
   saved.graph_version = graph.version();

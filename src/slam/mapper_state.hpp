@@ -12,6 +12,7 @@
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
+#include "posefusion/robot/gravity.hpp"
 #include "posefusion/robot/robot_motion.hpp"
 #include "posefusion/slam/localiser.hpp"
 #include "posefusion/slam/mapper.hpp"
@@ -54,6 +55,7 @@ struct Mapper::State {
   std::optional<Eigen::Isometry3d> T_world_map;
   Localiser localiser;
   RobotMotion robot;
+  GravityEstimate gravity;  ///< in the first fragment
   Eigen::Isometry3d T_map_start = Eigen::Isometry3d::Identity();
   PinholeCamera camera;            ///< of the frames of the map, full size
   bool sees_other_camera = false;  ///< the last frame was of another one
@@ -110,6 +112,7 @@ struct Mapper::State {
   int fragment() const { return localiser.lastPose().fragment; }
   bool isPlaceKnown() const { return fragment() == kFirstFragment; }
 
+  std::optional<Eigen::Isometry3d> worldFromMap() const;
   std::string defect(const StaticFrame& input) const;
   TrackingState state() const;
   RenderedModel modelFrom(const MapPose& pose);

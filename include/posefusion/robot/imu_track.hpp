@@ -31,6 +31,10 @@ class ImuTrack {
   /// are missing, or were beyond what the sensor measures.
   std::optional<MotionPrior> between(std::int64_t from_ns, std::int64_t to_ns) const;
 
+  /// What was felt between two moments, in the axes of the camera as it turned: the mean (m/s^2).
+  /// Nothing without samples, and in a fall.
+  std::optional<Eigen::Vector3d> feltBetween(std::int64_t from_ns, std::int64_t to_ns) const;
+
   /// The images tell that it was this turn: the bias follows, within seconds at first and slowly
   /// later.
   void learnBias(std::int64_t from_ns, std::int64_t to_ns, const Eigen::Matrix3d& R_before_after);

@@ -38,6 +38,11 @@ class RobotMotion {
   void compare(std::int64_t from_ns, std::int64_t to_ns, const Eigen::Isometry3d& T_seen,
                const Matrix6d& covariance);
 
+  /// See ImuTrack.
+  std::optional<Eigen::Vector3d> feltBetween(std::int64_t from_ns, std::int64_t to_ns) const {
+    return imu_.feltBetween(from_ns, to_ns);
+  }
+
   /// The clock was put back: what was sent before is forgotten, and so is trust.
   void restart();
 

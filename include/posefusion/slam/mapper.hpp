@@ -166,7 +166,7 @@ class Mapper {
   /// Nothing until place() was called for this map, here or in a session before.
   const std::optional<Eigen::Isometry3d>& placed() const;
 
-  /// The same for files; not placed, the first camera counts as level.
+  /// The same for files; not placed, gravity tells what is level or, unknown, the first camera.
   Eigen::Isometry3d worldFromMap() const;
 
   /// From the next frame on. The loop closer keeps what it began with.
