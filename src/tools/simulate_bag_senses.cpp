@@ -14,8 +14,16 @@
 namespace pf {
 namespace {
 
-using namespace simulator;
+// One by one: the core has an ImuSample of its own.
 using posefusion_ros::frames::kOptical;
+using simulator::ImuConfig;
+using simulator::ImuSample;
+using simulator::LegSample;
+using simulator::LegsConfig;
+using simulator::LegVariance;
+using simulator::Scenario;
+using simulator::Senses;
+using simulator::Simulation;
 
 constexpr char kImu[] = "/imu/data";
 constexpr char kOdometry[] = "/odom";
@@ -108,7 +116,7 @@ void writeLegs(const LegSample& sample, const Eigen::Isometry3d& T_camera_imu,
 void writeSenses(const Simulation& simulation, int frames, NewBag& bag) {
   const Senses senses = simulation.senses(frames);
   const Scenario& scenario = simulation.scenario();
-  for (const ImuSample& sample : senses.imu) {
+  for (const auto& sample : senses.imu) {
     const auto message = imuMessage(sample, scenario.imu, simulation.stampOf(sample.time_s));
     bag.write(kImu, message, message.header);
   }
