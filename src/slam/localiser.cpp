@@ -68,12 +68,12 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
+  location.is_told = told && told->has_shift;
   location.step = stepOf(location.motion, told);
-  const PosePrior prior = predict(location.step, elapsed_s);
+  const PosePrior prior = predict(location, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
-  location.is_told = told && told->has_shift;
   carry(location.step.value_or(MotionPrior()),
         location.is_told || hasEnoughCorners(location.motion));
   location.carried = carried_;
@@ -96,6 +96,8 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
     distrust(location, prior, stamp_ns);
   }
   location.covariance = recent_.apart(location.tracking, frame.camera);
+  previous_.covariance_to_view =
+      state_ == TrackingState::tracking ? location.covariance : previous_.covariance;
   remember(frame, flow, prior, location, stamp_ns);
   return location;
 }
@@ -113,7 +115,8 @@ SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns
                         frame.full_camera);
 }
 
-PosePrior Localiser::predict(const std::optional<MotionPrior>& step, double elapsed_s) const {
+PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
+  const std::optional<MotionPrior>& step = location.step;
   MotionPrior expected;
   if (step && step->has_shift) {
     expected = *step;
@@ -127,7 +130,10 @@ PosePrior Localiser::predict(const std::optional<MotionPrior>& step, double elap
   prior.is_measured = expected.has_shift;
   prior.T_map_camera = previous_.T_map_camera * expected.T_before_after;
   const Matrix6d A = adjoint(expected.T_before_after.inverse());
-  prior.covariance = A * previous_.covariance * A.transpose() + expected.covariance;
+  // Against a step that is known apart from them, images of a bare wall, which say a little that
+  // nothing moves, would gain weight with every frame.
+  const Matrix6d& before = location.is_told ? previous_.covariance_to_view : previous_.covariance;
+  prior.covariance = A * before * A.transpose() + expected.covariance;
   return prior;
 }
 

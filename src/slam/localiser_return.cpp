@@ -114,8 +114,8 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   proofs_ = looks_right ? (fits ? proofs_ : 0) + (is_blurred ? 0 : 1) : 0;
   is_place_verified_ = is_place_verified_ && looks_right && fits;
   // A place that was verified may be left for a view that hardly tells where it is from.
-  const bool is_unsure =
-      is_place_verified_ && positionSigma(location.tracking.covariance) > VerifyLimits().max_sigma_m;
+  const bool is_unsure = is_place_verified_ &&
+                         positionSigma(location.tracking.covariance) > VerifyLimits().max_sigma_m;
   if (is_unsure) proofs_ = std::min(proofs_, needed - 1);
   if (proofs_ >= needed) {
     const PlaceDoubt doubt = is_place_verified_

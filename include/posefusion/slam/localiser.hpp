@@ -126,6 +126,9 @@ class Localiser {
     Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
     Matrix6d covariance =
         Matrix6d::Zero();  ///< twist in the camera frame, since the last trusted one
+    /// The same relative to what was in view, most of which was mapped a moment before and lies
+    /// where that moment's error put it.
+    Matrix6d covariance_to_view = Matrix6d::Zero();
     Vector6d velocity = Vector6d::Zero();  ///< twist per second, camera frame
     cv::Mat depth_m;                       ///< full size
     SmallImage small;
@@ -139,7 +142,7 @@ class Localiser {
 
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
-  PosePrior predict(const std::optional<MotionPrior>& step, double elapsed_s) const;
+  PosePrior predict(const Location& location, double elapsed_s) const;
   TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
                        const ModelRenderer& render, Verdict& verdict) const;
   void carry(const MotionPrior& step, bool is_known);
