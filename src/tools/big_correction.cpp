@@ -246,15 +246,13 @@ int bigCorrection(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Time of a correction in a big map, on the tracking thread and beside it.",
-               "posefusion_big_correction"};
+  pf::CommandLine app{"Time of a correction in a big map, on the tracking thread and beside it.",
+                      "posefusion_big_correction"};
   pf::Options options;
-  app.add_option("sequence", options.sequence, "TUM folder without people")->required();
-  app.add_option("--frames", options.frames, "of the recording")->capture_default_str();
-  app.add_option("--surfels", options.surfels, "of the map, about")->capture_default_str();
-  app.add_option("--keyframes", options.keyframes, "of the map, about")->capture_default_str();
-  app.add_option("--corrections", options.corrections, "of all of it")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  app.addOption("sequence", options.sequence, "TUM folder without people")->required();
+  app.addOption("--frames", options.frames, "of the recording");
+  app.addOption("--surfels", options.surfels, "of the map, about");
+  app.addOption("--keyframes", options.keyframes, "of the map, about");
+  app.addOption("--corrections", options.corrections, "of all of it")->check(pf::positive());
   return pf::runTool(app, argc, argv, [&] { return pf::bigCorrection(options); });
 }

@@ -116,15 +116,14 @@ int bigMap(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Time of tracking and fusion among few and among many surfels out of view.",
-               "posefusion_big_map"};
+  pf::CommandLine app{"Time of tracking and fusion among few and among many surfels out of view.",
+                      "posefusion_big_map"};
   pf::Options options;
-  app.add_option("sequence", options.sequence, "TUM folder without people")->required();
-  app.add_option("--frames", options.frames, "of the recording")->capture_default_str();
-  app.add_option("--few", options.few, "surfels out of view")->capture_default_str();
-  app.add_option("--many", options.many, "surfels out of view")->capture_default_str();
-  app.add_option("--repeats", options.repeats, "measurements of each, in turns")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  app.addOption("sequence", options.sequence, "TUM folder without people")->required();
+  app.addOption("--frames", options.frames, "of the recording");
+  app.addOption("--few", options.few, "surfels out of view");
+  app.addOption("--many", options.many, "surfels out of view");
+  app.addOption("--repeats", options.repeats, "measurements of each, in turns")
+      ->check(pf::positive());
   return pf::runTool(app, argc, argv, [&] { return pf::bigMap(options); });
 }

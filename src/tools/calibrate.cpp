@@ -124,16 +124,17 @@ int calibrate(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Estimates the smooth systematic error of a depth camera from a map or a recording.",
-               "posefusion_calibrate"};
+  pf::CommandLine app{
+      "Estimates the smooth systematic error of a depth camera from a map or a recording.",
+      "posefusion_calibrate"};
   pf::Options options;
-  app.add_option("input", options.input,
-                 "map file (*.pfdb), or a recording (TUM folder or bag), which is mapped for it")
+  app.addOption("input", options.input,
+                "map file (*.pfdb), or a recording (TUM folder or bag), which is mapped for it")
       ->required();
-  app.add_option("-o,--output", options.output, "calibration file to write")->required();
-  app.add_option("--name", options.name, "of the camera: serial number, or what you call it");
-  app.add_option("--picture", options.picture, "PNG of the field");
-  app.add_option("--truth", options.truth,
-                 "folder of the simulated recording: how far from the true field");
+  app.addOption("-o,--output", options.output, "calibration file to write")->required();
+  app.addOption("--name", options.name, "of the camera: serial number, or what you call it");
+  app.addOption("--picture", options.picture, "PNG of the field");
+  app.addOption("--truth", options.truth,
+                "folder of the simulated recording: how far from the true field");
   return pf::runTool(app, argc, argv, [&] { return pf::calibrate(options); });
 }

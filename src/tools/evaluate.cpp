@@ -16,100 +16,96 @@ struct PairQuestion {
 };
 
 /// Takes the newest run where a folder of runs is named.
-CLI::Validator newest() {
-  return CLI::Validator(
-      [](std::string& path) {
-        path = newestRun(path);
-        return std::string();
-      },
-      "", "newest run");
+ValueCheck newest() {
+  return {"", [](std::string& path) {
+            path = newestRun(path);
+            return true;
+          }};
 }
 
-CLI::Option* addTrajectoryOptions(CLI::App& app, TrajectoryQuestion& question) {
-  app.add_option("truth", question.truth,
-                 "sequence (TUM folder with groundtruth.txt), or true trajectory");
-  auto* estimate = app.add_option("estimate", question.estimate,
-                                  "estimated trajectory, or output folder of posefusion_run")
-                       ->transform(newest());
-  app.add_flag("--scale", question.with_scale, "align with a scale too");
-  app.add_option("--plot", question.plot, "picture of the differences to write, PNG");
-  app.add_option("--plan", question.plan,
-                 "picture to write, PNG: the map from above with both paths and wrong poses");
-  app.add_flag("--scene", question.scene,
-               "plan: over the whole simulated room, not over the run's map");
-  app.add_flag("--json", question.json, "print JSON");
+Option* addTrajectoryOptions(CommandLine& app, TrajectoryQuestion& question) {
+  app.addOption("truth", question.truth,
+                "sequence (TUM folder with groundtruth.txt), or true trajectory");
+  auto* estimate = app.addOption("estimate", question.estimate,
+                                 "estimated trajectory, or output folder of posefusion_run")
+                       ->check(newest());
+  app.addFlag("--scale", question.with_scale, "align with a scale too");
+  app.addOption("--plot", question.plot, "picture of the differences to write, PNG");
+  app.addOption("--plan", question.plan,
+                "picture to write, PNG: the map from above with both paths and wrong poses");
+  app.addFlag("--scene", question.scene,
+              "plan: over the whole simulated room, not over the run's map");
+  app.addFlag("--json", question.json, "print JSON");
   return estimate;
 }
 
-CLI::App* addRunCommand(CLI::App& app, RunQuestion& run) {
-  auto* command = app.add_subcommand("run", "the map of a run against its input");
-  command->add_option("run", run.run, "output folder of posefusion_run")
+CommandLine* addRunCommand(CommandLine& app, RunQuestion& run) {
+  auto* command = app.addCommand("run", "the map of a run against its input");
+  command->addOption("run", run.run, "output folder of posefusion_run")
       ->required()
-      ->transform(newest());
-  command->add_option("input", run.input, "TUM folder or bag it was made from")->required();
-  command->add_option("--truth", run.truth, "true trajectory, TUM format");
-  command->add_option("--camera", run.camera, "camera file, instead of the input's own");
-  command->add_option("--masks", run.masks, "true masks of people; default: INPUT/mask");
-  command->add_option("--first-frame", run.first_frame, "depth: first frame of the input")
-      ->capture_default_str();
-  command->add_option("--last-frame", run.last_frame, "depth: frame to stop before")
-      ->capture_default_str();
-  command->add_flag("--json", run.json, "print JSON");
+      ->check(newest());
+  command->addOption("input", run.input, "TUM folder or bag it was made from")->required();
+  command->addOption("--truth", run.truth, "true trajectory, TUM format");
+  command->addOption("--camera", run.camera, "camera file, instead of the input's own");
+  command->addOption("--masks", run.masks, "true masks of people; default: INPUT/mask");
+  command->addOption("--first-frame", run.first_frame, "depth: first frame of the input");
+  command->addOption("--last-frame", run.last_frame, "depth: frame to stop before");
+  command->addFlag("--json", run.json, "print JSON");
   return command;
 }
 
-CLI::App* addKnownCommand(CLI::App& app, KnownQuestion& question) {
-  auto* command = app.add_subcommand(
+CommandLine* addKnownCommand(CommandLine& app, KnownQuestion& question) {
+  auto* command = app.addCommand(
       "known", "how many of the frames that truly see what was mapped before have a pose");
-  command->add_option("run", question.run, "output folder of posefusion_run")
+  command->addOption("run", question.run, "output folder of posefusion_run")
       ->required()
-      ->transform(newest());
-  command->add_option("sequence", question.sequence, "sequence with groundtruth.txt")->required();
-  command->add_option("--status", question.status, "table of posefusion_run --save-status")
+      ->check(newest());
+  command->addOption("sequence", question.sequence, "sequence with groundtruth.txt")->required();
+  command->addOption("--status", question.status, "table of posefusion_run --save-status")
       ->required();
-  command->add_flag("--json", question.json, "print JSON");
+  command->addFlag("--json", question.json, "print JSON");
   return command;
 }
 
-CLI::App* addMasksCommand(CLI::App& app, PairQuestion& question) {
-  auto* command = app.add_subcommand("masks", "masks of people against true ones");
-  command->add_option("truth", question.truth, "sequence with mask/ (without: nobody is in it)")
+CommandLine* addMasksCommand(CommandLine& app, PairQuestion& question) {
+  auto* command = app.addCommand("masks", "masks of people against true ones");
+  command->addOption("truth", question.truth, "sequence with mask/ (without: nobody is in it)")
       ->required();
-  command->add_option("masks", question.checked, "output folder of posefusion_run --save-masks")
+  command->addOption("masks", question.checked, "output folder of posefusion_run --save-masks")
       ->required()
-      ->transform(newest());
-  command->add_flag("--json", question.json, "print JSON");
+      ->check(newest());
+  command->addFlag("--json", question.json, "print JSON");
   return command;
 }
 
-CLI::App* addCovarianceCommand(CLI::App& app, PairQuestion& question) {
-  auto* command = app.add_subcommand(
+CommandLine* addCovarianceCommand(CommandLine& app, PairQuestion& question) {
+  auto* command = app.addCommand(
       "covariance", "whether the true errors of motions are as large as the reported covariance");
-  command->add_option("truth", question.truth, "sequence, or true trajectory")->required();
-  command->add_option("status", question.checked, "table of posefusion_run --save-status")
+  command->addOption("truth", question.truth, "sequence, or true trajectory")->required();
+  command->addOption("status", question.checked, "table of posefusion_run --save-status")
       ->required();
-  command->add_flag("--json", question.json, "print JSON");
+  command->addFlag("--json", question.json, "print JSON");
   return command;
 }
 
 /// The first of the two is the run, which is checked.
-CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
-  auto* command = app.add_subcommand(
-      "surface", "the map of a run against the true surface of a simulated room");
-  command->add_option("run", question.checked, "output folder of posefusion_run")
+CommandLine* addSurfaceCommand(CommandLine& app, PairQuestion& question) {
+  auto* command =
+      app.addCommand("surface", "the map of a run against the true surface of a simulated room");
+  command->addOption("run", question.checked, "output folder of posefusion_run")
       ->required()
-      ->transform(newest());
-  command->add_option("sequence", question.truth, "sequence with scene_points.ply")->required();
-  command->add_flag("--json", question.json, "print JSON");
+      ->check(newest());
+  command->addOption("sequence", question.truth, "sequence with scene_points.ply")->required();
+  command->addFlag("--json", question.json, "print JSON");
   return command;
 }
 
-CLI::App* addLoopsCommand(CLI::App& app, PairQuestion& question) {
+CommandLine* addLoopsCommand(CommandLine& app, PairQuestion& question) {
   auto* command =
-      app.add_subcommand("loops", "the loops that a map was corrected by against true poses");
-  command->add_option("map", question.checked, "map file (map.pfdb)")->required();
-  command->add_option("truth", question.truth, "sequence, or true trajectory")->required();
-  command->add_flag("--json", question.json, "print JSON");
+      app.addCommand("loops", "the loops that a map was corrected by against true poses");
+  command->addOption("map", question.checked, "map file (map.pfdb)")->required();
+  command->addOption("truth", question.truth, "sequence, or true trajectory")->required();
+  command->addFlag("--json", question.json, "print JSON");
   return command;
 }
 
@@ -118,20 +114,19 @@ CLI::App* addLoopsCommand(CLI::App& app, PairQuestion& question) {
 
 int main(int argc, char** argv) {
   using namespace pf;
-  CLI::App app{"Errors of an estimated trajectory by the definitions of the TUM benchmark.",
-               "posefusion_evaluate"};
-  app.require_subcommand(0, 1);
+  CommandLine app{"Errors of an estimated trajectory by the definitions of the TUM benchmark.",
+                  "posefusion_evaluate"};
   TrajectoryQuestion trajectory;
   RunQuestion run;
   KnownQuestion known;
   PairQuestion masks, covariance, surface, loops;
-  const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
-  const CLI::App* run_command = addRunCommand(app, run);
-  const CLI::App* known_command = addKnownCommand(app, known);
-  const CLI::App* masks_command = addMasksCommand(app, masks);
-  const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
-  const CLI::App* surface_command = addSurfaceCommand(app, surface);
-  const CLI::App* loops_command = addLoopsCommand(app, loops);
+  const Option* estimate = addTrajectoryOptions(app, trajectory);
+  const CommandLine* run_command = addRunCommand(app, run);
+  const CommandLine* known_command = addKnownCommand(app, known);
+  const CommandLine* masks_command = addMasksCommand(app, masks);
+  const CommandLine* covariance_command = addCovarianceCommand(app, covariance);
+  const CommandLine* surface_command = addSurfaceCommand(app, surface);
+  const CommandLine* loops_command = addLoopsCommand(app, loops);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
       evaluateRun(run);
@@ -148,7 +143,7 @@ int main(int argc, char** argv) {
     } else if (*estimate) {
       evaluateTrajectory(trajectory);
     } else {
-      throw CLI::RequiredError("true and estimated trajectory");
+      throw CommandError(CommandFault::missing, "TRUTH and ESTIMATE are missing: two trajectories");
     }
     return 0;
   });

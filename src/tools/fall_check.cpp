@@ -203,13 +203,13 @@ int fallCheck(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"How soon a camera came back after a fall.", "posefusion_fall_check"};
+  pf::CommandLine app{"How soon a camera came back after a fall.", "posefusion_fall_check"};
   pf::Options options;
-  app.add_option("sequence", options.sequence, "TUM folder with truth and events")->required();
-  app.add_option("status", options.status, "table of posefusion_run --save-status")->required();
-  app.add_option("--map", options.map, "map file (*.pfdb) of the run")->required();
-  app.add_option("--map-sequence", options.map_sequence,
-                 "TUM folder that the map was made of; default: the run made it");
-  app.add_flag("--each", options.each, "tell of each frame since the first fall, on stderr");
+  app.addOption("sequence", options.sequence, "TUM folder with truth and events")->required();
+  app.addOption("status", options.status, "table of posefusion_run --save-status")->required();
+  app.addOption("--map", options.map, "map file (*.pfdb) of the run")->required();
+  app.addOption("--map-sequence", options.map_sequence,
+                "TUM folder that the map was made of; default: the run made it");
+  app.addFlag("--each", options.each, "tell of each frame since the first fall, on stderr");
   return pf::runTool(app, argc, argv, [&] { return pf::fallCheck(options); });
 }

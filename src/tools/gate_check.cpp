@@ -74,8 +74,9 @@ int gateCheck(const std::string& folder) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Seconds until the blur gate is used to another scene.", "posefusion_gate_check"};
+  pf::CommandLine app{"Seconds until the blur gate is used to another scene.",
+                      "posefusion_gate_check"};
   std::string folder;
-  app.add_option("sequence", folder, "TUM folder")->required();
+  app.addOption("sequence", folder, "TUM folder")->required();
   return pf::runTool(app, argc, argv, [&] { return pf::gateCheck(folder); });
 }

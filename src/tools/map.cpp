@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_map: looks into a map file.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <exception>
-#include <iostream>
 #include <set>
 
 #include "map_calibration.hpp"
@@ -23,6 +20,7 @@
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/plan_picture.hpp"
 #include "posefusion/slam/config.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -144,65 +142,59 @@ void exportAll(const std::string& file, const std::string& folder) {
 }
 
 int lookIntoMap(int argc, char** argv) {
-  CLI::App app{"Looks into a map file of posefusion without changing it, or mends it in a copy."};
-  app.require_subcommand(1);
+  CommandLine app{"Looks into a map file of posefusion without changing it, or mends it in a copy.",
+                  "posefusion_map"};
   std::string file, folder;
   const auto command = [&](const char* name, const char* help) {
-    CLI::App* added = app.add_subcommand(name, help);
-    added->add_option("file", file, "map file, *.pfdb")->required();
+    CommandLine* added = app.addCommand(name, help);
+    added->addOption("file", file, "map file, *.pfdb")->required();
     return added;
   };
-  const CLI::App* info = command("info", "prints what is in it");
-  const CLI::App* checking = command("check", "reads all of it; exit code 1 when it is damaged");
+  const CommandLine* info = command("info", "prints what is in it");
+  const CommandLine* checking = command("check", "reads all of it; exit code 1 when it is damaged");
   command("export", "writes map.ply trajectory.txt keyframes/ plan.png")
-      ->add_option("-o,--output", folder, "folder to write into")
+      ->addOption("-o,--output", folder, "folder to write into")
       ->required();
   std::string repaired;
-  CLI::App* const repairing =
+  CommandLine* const repairing =
       command("repair", "writes what can be read of a damaged map into a new file");
-  repairing->add_option("-o,--output", repaired, "the new file")->required();
+  repairing->addOption("-o,--output", repaired, "the new file")->required();
   std::string calibration, picture;
-  CLI::App* const calibrating =
+  CommandLine* const calibrating =
       command("calibration", "writes what its depth was corrected by into a calibration file");
-  calibrating->add_option("-o,--output", calibration, "the calibration file")->required();
-  calibrating->add_option("--picture", picture, "PNG of the field");
+  calibrating->addOption("-o,--output", calibration, "the calibration file")->required();
+  calibrating->addOption("--picture", picture, "PNG of the field");
   std::string refined;
-  CLI::App* const refining =
+  CommandLine* const refining =
       command("refine", "aligns all keyframes that see the same surface, into a new file");
-  refining->add_option("-o,--output", refined, "the new file")->required();
+  refining->addOption("-o,--output", refined, "the new file")->required();
   std::string second, merged;
-  CLI::App* const merging =
+  CommandLine* const merging =
       command("merge", "makes one map of two that know a place in common, in a new file");
-  merging->add_option("second", second, "map file that comes into the coordinates of the first")
+  merging->addOption("second", second, "map file that comes into the coordinates of the first")
       ->required();
-  merging->add_option("-o,--output", merged, "the new file")->required();
-  CLI11_PARSE(app, argc, argv);
-  if (*merging) {
-    mergeMaps(file, second, merged);
-  } else if (*refining) {
-    refineMap(file, refined);
-  } else if (*repairing) {
-    repair(file, repaired);
-  } else if (*calibrating) {
-    exportCalibration(file, calibration, picture);
-  } else if (*info) {
-    printInfo(file);
-  } else if (*checking) {
-    check(file);
-  } else {
-    exportAll(file, folder);
-  }
-  return 0;
+  merging->addOption("-o,--output", merged, "the new file")->required();
+  return runTool(app, argc, argv, [&] {
+    if (*merging) {
+      mergeMaps(file, second, merged);
+    } else if (*refining) {
+      refineMap(file, refined);
+    } else if (*repairing) {
+      repair(file, repaired);
+    } else if (*calibrating) {
+      exportCalibration(file, calibration, picture);
+    } else if (*info) {
+      printInfo(file);
+    } else if (*checking) {
+      check(file);
+    } else {
+      exportAll(file, folder);
+    }
+    return 0;
+  });
 }
 
 }  // namespace
 }  // namespace pf
 
-int main(int argc, char** argv) {
-  try {
-    return pf::lookIntoMap(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_map: " << error.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return pf::lookIntoMap(argc, argv); }

@@ -149,23 +149,22 @@ void measureAll(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  CommandLine app{
       "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a detector\n"
       "finds 4 joints or more, the empty frames in which it finds somebody, and its time a frame.",
       "posefusion_measure_detector"};
   Options o;
   o.config.every_nth_frame = 1;
-  app.add_option("scenarios", o.scenarios, "names or scene files")->required();
-  app.add_option("--detector", o.config.detector, "as in the settings")
-      ->check(CLI::IsMember({"auto", "embedded", "network", "network+embedded"}));
-  app.add_option("--model", o.config.model, "weights of a pose network");
-  app.add_option("--embedded-model", o.config.embedded_model, "weights of a person model");
-  app.add_option("--every", o.every, "looks at every n-th frame")->check(CLI::Range(1, 10000));
-  app.add_option("--duration", o.changes.duration_s, "seconds")->check(CLI::PositiveNumber);
-  app.add_option("--seed", o.changes.seed, "of the simulation");
-  app.add_option("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file")
-      ->allow_extra_args(false);
-  app.add_option("--failures", o.failures_file, "PNG with the first frames that went wrong");
+  app.addOption("scenarios", o.scenarios, "names or scene files")->required();
+  app.addOption("--detector", o.config.detector, "as in the settings")
+      ->check(oneOf({"auto", "embedded", "network", "network+embedded"}));
+  app.addOption("--model", o.config.model, "weights of a pose network");
+  app.addOption("--embedded-model", o.config.embedded_model, "weights of a person model");
+  app.addOption("--every", o.every, "looks at every n-th frame")->check(range(1, 10000));
+  app.addOption("--duration", o.changes.duration_s, "seconds")->check(positive());
+  app.addOption("--seed", o.changes.seed, "of the simulation");
+  app.addOption("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file");
+  app.addOption("--failures", o.failures_file, "PNG with the first frames that went wrong");
   return runTool(app, argc, argv, [&] {
     measureAll(o);
     return 0;

@@ -25,13 +25,13 @@ struct Options {
   int threads = 0;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--seed", o.seed, "everything random; same seed, same bytes");
-  app.add_option("--first-room", o.first_room, "number of the first room");
-  app.add_option("--rooms", o.rooms,
-                 "so many rooms, " + std::to_string(kSamplesPerRoom) + " pictures of each");
-  app.add_option("--threads", o.threads, "at most so many, 0: as many as there are cores")
-      ->check(CLI::NonNegativeNumber);
+void addOptions(CommandLine& app, Options& o) {
+  app.addOption("--seed", o.seed, "everything random; same seed, same bytes");
+  app.addOption("--first-room", o.first_room, "number of the first room");
+  app.addOption("--rooms", o.rooms,
+                "so many rooms, " + std::to_string(kSamplesPerRoom) + " pictures of each");
+  app.addOption("--threads", o.threads, "at most so many, 0: as many as there are cores")
+      ->check(nonNegative());
 }
 
 int stream(const Options& o) {
@@ -64,7 +64,7 @@ int stream(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  CommandLine app{
       "Writes training pictures for the person model to stdout: simulated depth, people, joints.",
       "posefusion_person_data"};
   Options options;

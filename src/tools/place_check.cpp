@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For the bench: how well a place is found again in a map. The frames before a time are fused at
 // their true poses, people taken out by the recording's masks; later frames are looked for.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -24,6 +22,7 @@
 #include "posefusion/loop/verify.hpp"
 #include "posefusion/map/fusion.hpp"
 #include "posefusion/map/render.hpp"
+#include "tool.hpp"
 
 namespace pf {
 namespace {
@@ -219,33 +218,20 @@ int placeCheck(const Options& options) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"How well later frames of a recording are found in the map of earlier ones."};
+  CommandLine app{"How well later frames of a recording are found in the map of earlier ones.",
+                  "posefusion_place_check"};
   Options options;
-  app.add_option("sequence", options.sequence, "TUM folder with true poses")->required();
-  app.add_option("--map-until", options.map_until_s, "seconds")->capture_default_str();
-  app.add_option("--fuse-every", options.fuse_every, "of the frames before")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--from", options.query_from_s, "seconds")->capture_default_str();
-  app.add_option("--until", options.query_until_s, "seconds");
-  app.add_option("--step", options.query_step_s, "seconds")->capture_default_str();
-  app.add_flag("--wide", options.wide, "search as after loading a map");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  return placeCheck(options);
+  app.addOption("sequence", options.sequence, "TUM folder with true poses")->required();
+  app.addOption("--map-until", options.map_until_s, "seconds");
+  app.addOption("--fuse-every", options.fuse_every, "of the frames before")->check(positive());
+  app.addOption("--from", options.query_from_s, "seconds");
+  app.addOption("--until", options.query_until_s, "seconds");
+  app.addOption("--step", options.query_step_s, "seconds");
+  app.addFlag("--wide", options.wide, "search as after loading a map");
+  return runTool(app, argc, argv, [&] { return placeCheck(options); });
 }
 
 }  // namespace
 }  // namespace pf
 
-int main(int argc, char** argv) {
-  try {
-    return pf::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "posefusion_place_check: " << error.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return pf::run(argc, argv); }

@@ -226,12 +226,13 @@ int returnCheck(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"How soon a camera is found in a map made before.", "posefusion_return_check"};
+  pf::CommandLine app{"How soon a camera is found in a map made before.",
+                      "posefusion_return_check"};
   pf::Options options;
-  app.add_option("sequence", options.sequence, "TUM folder, of which the map was made")->required();
-  app.add_option("--map", options.map, "map file (*.pfdb)")->required();
-  app.add_option("--starts", options.starts)->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--falls", options.falls)->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--seed", options.seed, "of the places tried")->capture_default_str();
+  app.addOption("sequence", options.sequence, "TUM folder, of which the map was made")->required();
+  app.addOption("--map", options.map, "map file (*.pfdb)")->required();
+  app.addOption("--starts", options.starts)->check(pf::nonNegative());
+  app.addOption("--falls", options.falls)->check(pf::nonNegative());
+  app.addOption("--seed", options.seed, "of the places tried");
   return pf::runTool(app, argc, argv, [&] { return pf::returnCheck(options); });
 }

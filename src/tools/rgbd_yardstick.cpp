@@ -90,8 +90,8 @@ int yardstick(const std::string& folder) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Time and path of OpenCV's RgbdICPOdometry.", "posefusion_rgbd_yardstick"};
+  pf::CommandLine app{"Time and path of OpenCV's RgbdICPOdometry.", "posefusion_rgbd_yardstick"};
   std::string folder;
-  app.add_option("sequence", folder, "TUM folder")->required();
+  app.addOption("sequence", folder, "TUM folder")->required();
   return pf::runTool(app, argc, argv, [&] { return pf::yardstick(folder); });
 }

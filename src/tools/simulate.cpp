@@ -38,25 +38,22 @@ struct Options {
   ScenarioChanges changes;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("scenario", o.scenario, "name (see --list) or scene file (.yaml)");
-  app.add_option("-o,--output", o.output, "new TUM folder, or a new bag when it ends in .bag");
-  app.add_option("--seed", o.changes.seed, "everything random; same seed, same bytes");
-  app.add_option("--duration", o.changes.duration_s, "seconds")->check(CLI::PositiveNumber);
-  app.add_option("--start", o.changes.start_s, "begin so many seconds into the scenario")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file")
-      ->allow_extra_args(false);
-  app.add_option("--contact-sheet", o.sheet, "PNG with frames spread over the duration");
-  app.add_option("--sheet-frames", o.sheet_frames, "frames of the contact sheet")
-      ->check(CLI::Range(1, 200));
-  app.add_option("--sheet-width", o.sheet_width, "width of a picture of it")
-      ->check(CLI::Range(40, 2000));
-  app.add_flag(
-      "--no-images", o.no_images,
-      "into the folder, which may be there, only the true poses and what the other sensors "
-      "say: nothing is drawn");
-  app.add_flag("--list", o.list, "names of the scenarios");
+void addOptions(CommandLine& app, Options& o) {
+  app.addOption("scenario", o.scenario, "name (see --list) or scene file (.yaml)");
+  app.addOption("-o,--output", o.output, "new TUM folder, or a new bag when it ends in .bag");
+  app.addOption("--seed", o.changes.seed, "everything random; same seed, same bytes");
+  app.addOption("--duration", o.changes.duration_s, "seconds")->check(positive());
+  app.addOption("--start", o.changes.start_s, "begin so many seconds into the scenario")
+      ->check(nonNegative());
+  app.addOption("--set", o.changes.assignments, "KEY=VALUE: any value of the scene file");
+  app.addOption("--contact-sheet", o.sheet, "PNG with frames spread over the duration");
+  app.addOption("--sheet-frames", o.sheet_frames, "frames of the contact sheet")
+      ->check(range(1, 200));
+  app.addOption("--sheet-width", o.sheet_width, "width of a picture of it")->check(range(40, 2000));
+  app.addFlag("--no-images", o.no_images,
+              "into the folder, which may be there, only the true poses and what the other sensors "
+              "say: nothing is drawn");
+  app.addFlag("--list", o.list, "names of the scenarios");
 }
 
 void makeSheet(Simulation& simulation, const Options& o) {
@@ -128,9 +125,12 @@ int simulate(const Options& options) {
     for (const auto& name : scenarioNames()) std::cout << name << "\n";
     return 0;
   }
-  if (options.scenario.empty()) throw CLI::RequiredError("scenario");
+  if (options.scenario.empty())
+    throw CommandError(CommandFault::missing,
+                       "SCENARIO is missing: a name (see --list) or a scene file");
   if (options.output.empty() && options.sheet.empty()) {
-    throw CLI::RequiredError("--output or --contact-sheet");
+    throw CommandError(CommandFault::missing,
+                       "--output is missing: what to write (or --contact-sheet)");
   }
   if (options.no_images && isBag(options)) {
     throw InputError(options.output + ": is a bag, --no-images expects a folder");
@@ -144,7 +144,7 @@ int simulate(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  CommandLine app{
       "Makes a recording of a simulated room: colour, depth, and the truth of camera and people.",
       "posefusion_simulate"};
   Options options;

@@ -112,15 +112,15 @@ void convert(pf::FrameSource& source, int max_frames, const std::string& out) {
 int main(int argc, char** argv) {
   std::string input, camera_file, out;
   int max_frames = 0;
-  CLI::App app{
+  pf::CommandLine app{
       "Writes a TUM folder as a ROS bag: colour, registered depth, camera_info, recorded people\n"
       "and true poses, under the names of openni2_launch.",
       "posefusion_to_bag"};
-  app.add_option("tum_folder", input, "the recording")->required();
-  app.add_option("bag", out, "new bag; one of that name is replaced")->required();
-  app.add_option("--camera", camera_file, "camera of the folder, instead of its camera.yaml");
-  app.add_option("--max-frames", max_frames, "stop after so many frames; 0: all")
-      ->check(CLI::NonNegativeNumber);
+  app.addOption("tum_folder", input, "the recording")->required();
+  app.addOption("bag", out, "new bag; one of that name is replaced")->required();
+  app.addOption("--camera", camera_file, "camera of the folder, instead of its camera.yaml");
+  app.addOption("--max-frames", max_frames, "stop after so many frames; 0: all")
+      ->check(pf::nonNegative());
   return pf::runTool(app, argc, argv, [&] {
     posefusion_ros::convert(*pf::openTumFolder(input, camera_file), max_frames, out);
     return 0;

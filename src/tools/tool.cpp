@@ -19,15 +19,19 @@ constexpr int kHeaps = 2;
 
 }  // namespace
 
-int runTool(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+int runTool(CommandLine& app, int argc, char** argv, const std::function<int()>& work) {
   mallopt(M_ARENA_MAX, kHeaps);
   try {
-    app.parse(argc, argv);
+    if (const auto help = app.parse({argv + 1, argv + argc})) {
+      std::cout << *help;
+      return 0;
+    }
     return work();
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
+  } catch (const CommandError& error) {
+    std::cerr << app.name() << ": " << error.what() << " (--help tells more)\n";
+    return static_cast<int>(error.fault());
   } catch (const std::exception& error) {
-    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    std::cerr << app.name() << ": " << error.what() << "\n";
     return 1;
   }
 }

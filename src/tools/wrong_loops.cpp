@@ -117,16 +117,15 @@ int tellWrongLoops(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tells wrong loops while a recording is mapped, and what becomes of them.",
-               "posefusion_wrong_loops"};
+  pf::CommandLine app{"Tells wrong loops while a recording is mapped, and what becomes of them.",
+                      "posefusion_wrong_loops"};
   pf::Options options;
-  app.add_option("sequence", options.sequence, "TUM folder or bag")->required();
-  app.add_option("--truth", options.truth, "trajectory; default: that of the folder");
-  app.add_option("--detector", options.detector, "of people")->capture_default_str();
-  app.add_option("--loops", options.loops, "that are wrong; 0: none")->capture_default_str();
-  app.add_option("--from", options.from, "keyframe that the first leads from")
-      ->capture_default_str();
-  app.add_option("--to", options.to, "keyframe that the first leads to")->capture_default_str();
-  app.add_option("--seed", options.seed, "of what they are off by")->capture_default_str();
+  app.addOption("sequence", options.sequence, "TUM folder or bag")->required();
+  app.addOption("--truth", options.truth, "trajectory; default: that of the folder");
+  app.addOption("--detector", options.detector, "of people");
+  app.addOption("--loops", options.loops, "that are wrong; 0: none");
+  app.addOption("--from", options.from, "keyframe that the first leads from");
+  app.addOption("--to", options.to, "keyframe that the first leads to");
+  app.addOption("--seed", options.seed, "of what they are off by");
   return pf::runTool(app, argc, argv, [&] { return pf::tellWrongLoops(options); });
 }

@@ -10,7 +10,6 @@
 #include <rviz/view_manager.h>
 #include <rviz/visualization_manager.h>
 
-#include <CLI/CLI.hpp>
 #include <QApplication>
 #include <QTimer>
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include <random>
 
 #include "posefusion_ros/surfel_cloud.hpp"
+#include "tools/tool.hpp"
 
 namespace {
 
@@ -168,18 +168,20 @@ class Viewer {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Frames per second at which rviz shows a room of surfels."};
+  pf::CommandLine app{"Frames per second at which rviz shows a room of surfels.",
+                      "posefusion_viewer_speed"};
   Options options;
-  app.add_option("--surfels", options.surfels)->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--keep-fluid", options.keep_fluid)->capture_default_str();
-  app.add_option("--settle", options.settle_s, "seconds before it counts")->capture_default_str();
-  app.add_option("--seconds", options.seconds, "that it counts for")->capture_default_str();
-  app.add_option("--picture", options.picture, "what is seen at the end (PNG)");
-  CLI11_PARSE(app, argc, argv);
-  QApplication application(argc, argv);
-  ros::init(argc, argv, "viewer_speed", ros::init_options::NoSigintHandler);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  Viewer viewer(options);
-  return QApplication::exec();
+  app.addOption("--surfels", options.surfels)->check(pf::positive());
+  app.addOption("--keep-fluid", options.keep_fluid);
+  app.addOption("--settle", options.settle_s, "seconds before it counts");
+  app.addOption("--seconds", options.seconds, "that it counts for");
+  app.addOption("--picture", options.picture, "what is seen at the end (PNG)");
+  return pf::runTool(app, argc, argv, [&] {
+    QApplication application(argc, argv);
+    ros::init(argc, argv, "viewer_speed", ros::init_options::NoSigintHandler);
+    ros::AsyncSpinner spinner(1);
+    spinner.start();
+    Viewer viewer(options);
+    return QApplication::exec();
+  });
 }
