@@ -4,6 +4,44 @@
 #include <tbb/task_arena.h>
 
 namespace pf::simulator {
+namespace {
+
+// What Embree 3 has as a context before the rays, Embree 4 has as arguments after them.
+#if RTC_VERSION_MAJOR >= 4
+struct Query {
+  RTCIntersectArguments intersecting;
+  RTCOccludedArguments occluding;
+  explicit Query(bool is_coherent = false) {
+    rtcInitIntersectArguments(&intersecting);
+    rtcInitOccludedArguments(&occluding);
+    if (is_coherent) intersecting.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  }
+  void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersecting); }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit16& rays) {
+    rtcIntersect16(valid, scene, &rays, &intersecting);
+  }
+  void occlude(const int* valid, RTCScene scene, RTCRay16& rays) {
+    rtcOccluded16(valid, scene, &rays, &occluding);
+  }
+};
+#else
+struct Query {
+  RTCIntersectContext context;
+  explicit Query(bool is_coherent = false) {
+    rtcInitIntersectContext(&context);
+    if (is_coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+  void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit16& rays) {
+    rtcIntersect16(valid, scene, &context, &rays);
+  }
+  void occlude(const int* valid, RTCScene scene, RTCRay16& rays) {
+    rtcOccluded16(valid, scene, &context, &rays);
+  }
+};
+#endif
+
+}  // namespace
 
 RTCGeometry makeTriangles(RTCDevice device,
                           const std::vector<std::array<std::uint32_t, 3>>& triangles,
@@ -29,11 +67,10 @@ void buildTree(RTCScene scene) {
   one_thread.execute([scene] { rtcCommitScene(scene); });
 }
 
+void intersect(RTCScene scene, RTCRayHit& ray) { Query().intersect(scene, ray); }
+
 void intersect(RTCScene scene, RayPacket& packet) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(packet.valid, scene, &context, &packet.rays);
+  Query(true).intersect(packet.valid, scene, packet.rays);
 }
 
 std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float margin_m) {
@@ -56,9 +93,7 @@ std::array<bool, 16> blocks(RTCScene scene, const SightPacket& sight, float marg
     ray.mask[i] = 0xFFFFFFFFU;
     ray.flags[i] = 0;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, scene, &context, &ray);
+  Query().occlude(valid, scene, ray);
   std::array<bool, 16> blocked;
   for (std::size_t i = 0; i < 16; ++i) blocked[i] = valid[i] != 0 && ray.tfar[i] < 0.0F;
   return blocked;

@@ -28,7 +28,8 @@ float* makeVertices(RTCGeometry geometry, unsigned shape, std::size_t count);
 /// the same.
 void buildTree(RTCScene scene);
 
-/// Hits in the scene that are nearer than those in the packet.
+/// Hits in the scene that are nearer than the ray's, or those in the packet.
+void intersect(RTCScene scene, RTCRayHit& ray);
 void intersect(RTCScene scene, RayPacket& packet);
 
 /// Whether anything in the scene lies between the points, apart from `margin_m` at both ends.

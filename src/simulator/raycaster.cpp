@@ -48,12 +48,10 @@ void RayCaster::trace(RayPacket& packet) const {
 }
 
 void RayCaster::trace(RTCRayHit& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   ray.ray.tfar = std::numeric_limits<float>::infinity();
   ray.ray.mask = 0xFFFFFFFFU;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene.get(), &context, &ray);
+  intersect(state_->scene.get(), ray);
 }
 
 std::array<bool, 16> RayCaster::blocks(const SightPacket& sight, float margin_m) const {

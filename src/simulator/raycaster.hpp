@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <embree3/rtcore.h>
+#include POSEFUSION_EMBREE
 
 #include <array>
 #include <memory>
