@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "package_folders.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace pf {
@@ -70,8 +71,7 @@ std::vector<fs::path> packageConfigFolders() {
   std::vector<fs::path> folders;
   const char* override_folder = std::getenv("POSEFUSION_CONFIG_DIR");
   if (override_folder != nullptr && *override_folder != '\0') folders.emplace_back(override_folder);
-  folders.emplace_back(POSEFUSION_SOURCE_CONFIG_DIR);
-  folders.emplace_back(POSEFUSION_INSTALL_CONFIG_DIR);
+  for (const fs::path& folder : packageFolders("config")) folders.push_back(folder);
   return folders;
 }
 

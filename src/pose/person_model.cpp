@@ -6,6 +6,7 @@
 #include <fstream>
 #include <opencv2/dnn.hpp>
 
+#include "package_folders.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/pose/network_layers.hpp"
 
@@ -94,9 +95,12 @@ PersonMaps PersonModel::infer(const cv::Mat& small_m) {
 }
 
 std::string packagedPersonModel() {
-  const fs::path source = fs::path(POSEFUSION_SOURCE_MODELS_DIR) / "person.onnx";
-  if (fs::exists(source)) return source.string();
-  return (fs::path(POSEFUSION_INSTALL_MODELS_DIR) / "person.onnx").string();
+  fs::path file;
+  for (const fs::path& folder : packageFolders("models")) {
+    file = folder / "person.onnx";
+    if (fs::exists(file)) break;
+  }
+  return file.string();
 }
 
 }  // namespace pf
