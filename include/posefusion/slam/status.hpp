@@ -4,46 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
+#include "posefusion/slam/outcome.hpp"
 #include "posefusion/slam/reckoning.hpp"
 #include "posefusion/tracking/result.hpp"
 #include "posefusion/tracking/sparse_motion.hpp"
 
 namespace pf {
-
-enum class TrackingState {
-  initializing,  ///< no frame has been fused yet
-  tracking,      ///< located, fused
-  doubtful,      ///< located for now by dead reckoning or by an alignment that is not believed; not
-                 ///< fused
-  lost           ///< not located
-};
-
-/// What became of a frame, and why it was not fused.
-enum class FrameOutcome {
-  fused,          ///< believed, and taken into the map
-  bad_input,      ///< sizes, encodings or stamps that cannot be used
-  blurred,        ///< dropped by the gate
-  no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)
-  not_converged,  ///< the alignment did not settle
-  few_inliers,    ///< too little of the frame agrees with the model
-  degenerate,     ///< the images leave directions free, and no corners help
-  jumped,         ///< the motion is too large to be true
-  disagrees,      ///< alignment and corners tell of different motions
-  seen_through,   ///< the frame sees through too much of the model
-  unproven,       ///< after a loss: looks right, but not for long enough
-  forced,         ///< passed the blur gate only because too many were dropped before it
-  located         ///< believed as one that is fused, in a map that must not change
-};
-
-/// Whether the frame was believed, so that there is nothing to complain of.
-inline bool isGood(FrameOutcome outcome) {
-  return outcome == FrameOutcome::fused || outcome == FrameOutcome::located;
-}
-
-std::string_view name(TrackingState state);
-std::string_view name(FrameOutcome outcome);
 
 /// The answer for one frame.
 struct FrameStatus {

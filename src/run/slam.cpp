@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/run/slam.hpp"
+
+#include <utility>
+
+#include "posefusion/core/error.hpp"
+#include "posefusion/core/rigid_motion.hpp"
+#include "posefusion/io/map_file.hpp"
+#include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/run/run.hpp"
+
+namespace pf {
+namespace {
+
+std::string reasonFor(const FrameStatus& status, const std::string& defect) {
+  return defect.empty() ? reasonOf(status) : std::string(name(status.outcome)) + ": " + defect;
+}
+
+}  // namespace
+
+struct Slam::State {
+  State(const Config& config, RecordedPeople people)
+      : pipeline(config, makePoseDetector(config.pose, std::move(people))) {}
+
+  FrameAnswer answer(const FrameStatus& status, const std::string& defect) const {
+    FrameAnswer out;
+    out.stamp_ns = status.stamp_ns;
+    out.state = status.state;
+    out.outcome = status.outcome;
+    out.located = status.located;
+    out.T_world_camera = pipeline.mapper().worldFromMap() * status.T_map_camera;
+    out.covariance = status.covariance;
+    out.reason = reasonFor(status, defect);
+    return out;
+  }
+
+  Pipeline pipeline;
+};
+
+Slam::Slam(const Config& config) : state_(std::make_unique<State>(config, RecordedPeople{})) {}
+
+Slam::Slam(Config config, FrameSource& recording) {
+  config = configFor(config, recording);
+  RecordedPeople people;
+  if (config.pose.detector == "recorded") {
+    people = recording.people();
+    if (people.empty())
+      throw InputError("pose.detector: recorded, but the recording has no people");
+  }
+  state_ = std::make_unique<State>(config, std::move(people));
+}
+
+Slam::Slam(Slam&& other) noexcept = default;
+Slam& Slam::operator=(Slam&& other) noexcept = default;
+Slam::~Slam() = default;
+
+FrameAnswer Slam::process(const RgbdFrame& frame) {
+  return state_->answer(state_->pipeline.process(frame).status, {});
+}
+
+void Slam::process(FrameSource& recording, const std::function<bool(const FrameAnswer&)>& done) {
+  runPipeline(recording, state_->pipeline,
+              [&](const ProcessedFrame& frame, const std::string& defect) {
+                return !done || done(state_->answer(frame.status, defect));
+              });
+}
+
+std::string Slam::finish() { return state_->pipeline.finish(); }
+
+Trajectory Slam::trajectory() const {
+  const Mapper& mapper = state_->pipeline.mapper();
+  return inWorld(mapper.worldFromMap(), mapper.backEnd().trajectory());
+}
+
+SurfelArrays Slam::surfels() const {
+  const SurfelMap& map = state_->pipeline.mapper().map();
+  SurfelArrays stable;
+  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    if (map.isStable(s, i)) stable.append(s, &index, 1);
+  });
+  const RigidMotion motion(state_->pipeline.mapper().worldFromMap());
+  const SurfelArrays old = stable;
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    motion.point(old.x[i], old.y[i], old.z[i], stable.x[i], stable.y[i], stable.z[i]);
+    motion.direction(old.nx[i], old.ny[i], old.nz[i], stable.nx[i], stable.ny[i], stable.nz[i]);
+  }
+  return stable;
+}
+
+void Slam::saveTrajectory(const std::string& path) const {
+  pf::saveTrajectory(path, trajectory(), "poses of the camera in the map (z up)");
+}
+
+std::size_t Slam::saveMap(const std::string& path) const {
+  const Mapper& mapper = state_->pipeline.mapper();
+  return pf::saveMap(path, mapper.map(), mapper.worldFromMap());
+}
+
+}  // namespace pf
