@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SOURCES = ("include", "src", "test", "scripts", ".ci")
+SOURCES = ("include", "src", "test", "scripts", "examples", "cmake", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
@@ -149,7 +149,7 @@ class Repository(unittest.TestCase):
             self.skipTest("no clang-format")
         if FORMATTER not in version.stdout:
             self.skipTest(f"clang-format is not {FORMATTER}: {version.stdout.strip()}")
-        sources = [str(p) for p in files("include", "src", "test") if p.suffix in (".hpp", ".cpp")]
+        sources = [str(p) for p in files("include", "src", "test", "examples") if p.suffix in (".hpp", ".cpp")]
         done = subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], cwd=ROOT, text=True,
                               stderr=subprocess.PIPE)
         self.assertEqual(done.returncode, 0, "run clang-format -i:\n" + done.stderr[:2000])
@@ -209,7 +209,7 @@ class Repository(unittest.TestCase):
 
     def test_no_absolute_paths(self):
         absolute = re.compile(r"/(home|root|work|Users|mnt)/[A-Za-z]")
-        tracked = list(files("include", "src", "test", "scripts", ".ci", "config", "docs", "launch", "msg"))
+        tracked = list(files(*SOURCES, "config", "docs", "launch", "msg"))
         tracked += [p for p in ROOT.iterdir() if p.suffix in (".md", ".rst", ".xml", ".txt")]
         for path in tracked:
             try:
