@@ -86,6 +86,30 @@ class Scripts(unittest.TestCase):
         for package in packages:
             self.assertIn(f"`{package}`", documented, "docs/dependencies.md says why it is needed")
 
+    def test_setup_asks_rosdep_on_ubuntu(self):
+        if shutil.which("rosdep", path="/usr/bin"):
+            self.skipTest("skipped: there is a real rosdep")
+        with tempfile.TemporaryDirectory() as folder:
+            release, rosdep, log = (pathlib.Path(folder, name) for name in ("release", "rosdep", "log"))
+            release.write_text("ID=ubuntu\nVERSION_ID=20.04\n")
+            environment = {**os.environ, "POSEFUSION_OS_RELEASE": str(release), "ROS_DISTRO": "noetic",
+                           "PATH": f"{folder}:{os.environ['PATH']}"}
+            setup = [str(ROOT / "scripts" / "setup")]
+            done = subprocess.run(setup, env=environment, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("found no rosdep: install python3-rosdep", done.stderr)
+            rosdep.write_text(f'#!/bin/sh\necho "$@" >> {log}\n[ "$1" = install ]\n')
+            rosdep.chmod(0o755)
+            done = subprocess.run(setup, env=environment, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            what = f"--from-paths {ROOT} --ignore-src --rosdistro noetic"
+            self.assertEqual(log.read_text(), f"check {what}\ninstall {what} -y\n")
+
+    def test_only_known_systems_are_tested_in(self):
+        done = subprocess.run([str(ROOT / "scripts" / "test_in"), "sarge"], stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("'sarge': expected bullseye, bookworm or trixie", done.stderr)
+
     def test_summary_counts_and_tells_failure(self):
         with tempfile.TemporaryDirectory() as folder:
             results = pathlib.Path(folder)
