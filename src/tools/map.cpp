@@ -9,8 +9,9 @@
 
 #include "map_calibration.hpp"
 #include "map_merge.hpp"
+#include "map_mesh.hpp"
 #include "map_refine.hpp"
-#include "posefusion/config/yaml_map.hpp"
+#include "map_surfels.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
@@ -19,10 +20,8 @@
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/map_repair.hpp"
 #include "posefusion/io/ply.hpp"
-#include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/plan_picture.hpp"
-#include "posefusion/slam/config.hpp"
 
 namespace pf {
 namespace {
@@ -100,15 +99,6 @@ Trajectory trajectoryOf(const MapContent& content) {
   return trajectory;
 }
 
-SurfelMap mapOf(const MapReader& reader, const MapContent& content, const std::string& file) {
-  Config config;
-  if (!content.settings.empty()) applyYaml(config, parseYaml(content.settings, file), file);
-  config.map.memory_limit_mb = 1e6;
-  SurfelMap map(config.map);
-  map.restore(reader.surfels(), content.frame);
-  return map;
-}
-
 void exportKeyframes(const MapReader& reader, const MapContent& content,
                      const std::string& folder) {
   makeFolder(folder);
@@ -124,7 +114,7 @@ void exportKeyframes(const MapReader& reader, const MapContent& content,
 void exportAll(const std::string& file, const std::string& folder) {
   const MapReader reader(file);
   const MapContent content = reader.content();
-  const Eigen::Isometry3d T_world_map = placeOf(content).value_or(bodyFromOptical());
+  const Eigen::Isometry3d T_world_map = worldOf(content);
   makeFolder(folder);
   const std::size_t stable =
       saveMap(folder + "/map.ply", mapOf(reader, content, file), T_world_map);
@@ -154,9 +144,9 @@ int lookIntoMap(int argc, char** argv) {
   };
   const CLI::App* info = command("info", "prints what is in it");
   const CLI::App* checking = command("check", "reads all of it; exit code 1 when it is damaged");
-  command("export", "writes map.ply trajectory.txt keyframes/ plan.png")
-      ->add_option("-o,--output", folder, "folder to write into")
-      ->required();
+  CLI::App* const exporting =
+      command("export", "writes map.ply trajectory.txt keyframes/ plan.png");
+  exporting->add_option("-o,--output", folder, "folder to write into")->required();
   std::string repaired;
   CLI::App* const repairing =
       command("repair", "writes what can be read of a damaged map into a new file");
@@ -176,6 +166,7 @@ int lookIntoMap(int argc, char** argv) {
   merging->add_option("second", second, "map file that comes into the coordinates of the first")
       ->required();
   merging->add_option("-o,--output", merged, "the new file")->required();
+  addMeshCommand(app);
   CLI11_PARSE(app, argc, argv);
   if (*merging) {
     mergeMaps(file, second, merged);
@@ -189,7 +180,7 @@ int lookIntoMap(int argc, char** argv) {
     printInfo(file);
   } else if (*checking) {
     check(file);
-  } else {
+  } else if (*exporting) {
     exportAll(file, folder);
   }
   return 0;
