@@ -10,6 +10,9 @@ namespace {
 // A cell that the surface crosses has all its corners so near to it, in cells: its diagonal.
 constexpr float kDiagonal = 1.7321F;
 constexpr float kDepth = 2.0F;  // cells
+// Of a surfel that was seen from very far or aslant no more counts, in bridges: it must not cover
+// what nobody saw.
+constexpr float kMostRadius = 0.4F;
 
 }  // namespace
 
@@ -46,7 +49,7 @@ bool DiscMaker::make(std::size_t i, Disc& disc) const {
   const float length = disc.normal.norm(), radius = s.radius[i];
   if (!disc.center.allFinite() || !(length > 0.5F && length < 2.0F) || !(radius > 0)) return false;
   disc.normal /= length;
-  disc.radius = std::min(radius, bridge_m_);
+  disc.radius = std::min(radius, kMostRadius * bridge_m_);
   disc.reach = disc.radius + std::max(bridge_m_, kDiagonal * cell_m_);
   disc.depth = depth_m_;
   disc.weight = std::isfinite(s.weight[i]) ? std::max(0.1F, s.weight[i]) : 0.1F;

@@ -41,8 +41,7 @@ struct CellRange {
   Eigen::Vector3i low, high;
 };
 
-/// Surfels as discs. Of a surfel that was seen from very far or aslant no more counts than the
-/// bridge, so that it covers nothing that nobody saw.
+/// Surfels as discs.
 class DiscMaker {
  public:
   DiscMaker(const SurfelArrays& surfels, const MeshConfig& config);

@@ -104,6 +104,18 @@ CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
   return command;
 }
 
+CLI::App* addMeshCommand(CLI::App& app, MeshQuestion& question) {
+  auto* command = app.add_subcommand(
+      "mesh", "a mesh of a run's map against the true surface of a simulated room");
+  command->add_option("mesh", question.mesh, "*.ply of posefusion_map mesh")->required();
+  command->add_option("run", question.run, "output folder of posefusion_run")
+      ->required()
+      ->transform(newest());
+  command->add_option("sequence", question.sequence, "sequence with scene_points.ply")->required();
+  command->add_flag("--json", question.json, "print JSON");
+  return command;
+}
+
 CLI::App* addLoopsCommand(CLI::App& app, PairQuestion& question) {
   auto* command =
       app.add_subcommand("loops", "the loops that a map was corrected by against true poses");
@@ -124,6 +136,7 @@ int main(int argc, char** argv) {
   TrajectoryQuestion trajectory;
   RunQuestion run;
   KnownQuestion known;
+  MeshQuestion mesh;
   PairQuestion masks, covariance, surface, loops;
   const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
   const CLI::App* run_command = addRunCommand(app, run);
@@ -131,6 +144,7 @@ int main(int argc, char** argv) {
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
   const CLI::App* surface_command = addSurfaceCommand(app, surface);
+  const CLI::App* mesh_command = addMeshCommand(app, mesh);
   const CLI::App* loops_command = addLoopsCommand(app, loops);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
@@ -143,6 +157,8 @@ int main(int argc, char** argv) {
       evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
     } else if (*surface_command) {
       evaluateSurface(surface.checked, surface.truth, surface.json);
+    } else if (*mesh_command) {
+      evaluateMesh(mesh);
     } else if (*loops_command) {
       evaluateLoops(loops.checked, loops.truth, loops.json);
     } else if (*estimate) {
