@@ -5,12 +5,18 @@
 #include <cmath>
 #include <numeric>
 
+#include "posefusion/core/normal_line.hpp"
+#include "posefusion/core/parallel.hpp"
+#include "posefusion/core/point_grid.hpp"
+
 namespace pf {
 namespace {
 
 using Eigen::Vector3f;
 
 constexpr float kSpacing_m = 0.01F;
+constexpr float kFacing = 0.3F;  // 73 degrees
+constexpr std::size_t kGrain = 1024;
 
 /// The value that this share of the area stays below.
 double quantile(const std::vector<float>& values, const std::vector<float>& areas, double share) {
@@ -27,11 +33,32 @@ double quantile(const std::vector<float>& values, const std::vector<float>& area
   return 0;
 }
 
-/// How many of the points have one of these discs within kCovered_m.
-std::size_t countCovered(const std::vector<Vector3f>& points, const SurfaceSamples& discs) {
-  const std::vector<float> distances = distancesToSurface(points, discs);
-  return static_cast<std::size_t>(
-      std::count_if(distances.begin(), distances.end(), [](float d) { return d <= kCovered_m; }));
+/// How many of the samples have one of these discs where they should.
+std::size_t countCovered(const SurfaceSamples& seen, const SurfaceSamples& discs,
+                         const std::vector<float>& radii) {
+  const PointGrid grid(discs.positions);
+  const float largest = *std::max_element(radii.begin(), radii.end());
+  std::vector<char> covered(seen.positions.size(), 0);
+  parallelFor(covered.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    float at = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const NormalLine line{seen.positions[i], seen.normals[i]};
+      grid.visit(line.box(kCovered_m, largest + kCoveredBeside_m), [&](std::size_t k) {
+        if (covered[i] != 0) return;
+        const bool met = line.meets(grid[k], discs.normals[k], radii[k], kFacing, at);
+        const bool beside = (grid[k] - line.from).norm() <= kCoveredBeside_m + radii[k];
+        covered[i] = beside || (met && std::abs(at) <= kCovered_m) ? 1 : 0;
+      });
+    }
+  });
+  return static_cast<std::size_t>(std::count(covered.begin(), covered.end(), 1));
+}
+
+/// Brings samples into another frame.
+void move(const Eigen::Isometry3d& T_to_from, SurfaceSamples& samples) {
+  const Eigen::Isometry3f T = T_to_from.cast<float>();
+  for (Vector3f& p : samples.positions) p = T * p;
+  for (Vector3f& n : samples.normals) n = T.linear() * n;
 }
 
 /// The centres of surfels, as discs without extent.
@@ -93,34 +120,31 @@ double MeshScore::coverage() const {
   return seen > 0 ? static_cast<double>(covered) / static_cast<double>(seen) : 0.0;
 }
 
-double shareCovered(const std::vector<Vector3f>& points, const SurfelArrays& surfels,
+double shareCovered(const SurfaceSamples& seen, const SurfelArrays& surfels,
                     const Eigen::Isometry3d& T_truth_map) {
-  if (points.empty()) return 0;
-  std::vector<Vector3f> in_map = points;
-  const Eigen::Isometry3f T_map_truth = T_truth_map.inverse().cast<float>();
-  for (Vector3f& p : in_map) p = T_map_truth * p;
-  return static_cast<double>(countCovered(in_map, centresOf(surfels))) /
-         static_cast<double>(points.size());
+  if (seen.positions.empty() || surfels.size() == 0) return 0;
+  SurfaceSamples discs = centresOf(surfels);
+  move(T_truth_map, discs);
+  return static_cast<double>(countCovered(seen, discs, surfels.radius)) /
+         static_cast<double>(seen.positions.size());
 }
 
 MeshScore checkMesh(const TriangleMesh& mesh, const SurfelArrays& surfels,
                     const Eigen::Isometry3d& T_truth_map, const SurfaceSamples& truth,
-                    const std::vector<Vector3f>& seen) {
+                    const SurfaceSamples& seen) {
   MeshScore score;
   score.triangles = mesh.triangles.size();
-  score.seen = seen.size();
+  score.seen = seen.positions.size();
   if (mesh.triangles.empty()) return score;
   score.invented = countInvented(mesh, surfels);
   MeshSamples samples = sampleMesh(mesh);
-  const Eigen::Isometry3f T = T_truth_map.cast<float>();
-  for (Vector3f& p : samples.positions) p = T * p;
-  for (Vector3f& n : samples.normals) n = T.linear() * n;
   score.area_m2 = std::accumulate(samples.area_m2.begin(), samples.area_m2.end(), 0.0);
-  const std::vector<float> distances = distancesToSurface(samples.positions, truth);
+  SurfaceSamples discs{std::move(samples.positions), std::move(samples.normals), kSpacing_m};
+  move(T_truth_map, discs);
+  const std::vector<float> distances = distancesToSurface(discs.positions, truth);
   score.median_m = quantile(distances, samples.area_m2, 0.5);
   score.p95_m = quantile(distances, samples.area_m2, 0.95);
-  score.covered = countCovered(
-      seen, {std::move(samples.positions), std::move(samples.normals), 0.5F * kSpacing_m});
+  score.covered = countCovered(seen, discs, std::vector<float>(discs.positions.size(), kSpacing_m));
   return score;
 }
 

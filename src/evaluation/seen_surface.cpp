@@ -43,12 +43,15 @@ void SeenSurface::add(const RgbdFrame& frame, const cv::Mat& mask,
   ++views_;
 }
 
-std::vector<Eigen::Vector3f> SeenSurface::seenWell() const {
-  std::vector<Eigen::Vector3f> points;
+SurfaceSamples SeenSurface::seenWell() const {
+  SurfaceSamples samples;
+  samples.radius_m = truth_.radius_m;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
-    if (seen_[i] >= kViews) points.push_back(truth_.positions[i]);
+    if (seen_[i] < kViews) continue;
+    samples.positions.push_back(truth_.positions[i]);
+    samples.normals.push_back(truth_.normals[i]);
   }
-  return points;
+  return samples;
 }
 
 }  // namespace pf

@@ -22,9 +22,8 @@ namespace {
 constexpr std::size_t kEvery = 15;  // frames of the run, so that three views are three places
 
 /// What the frames that the run has poses of have seen.
-std::vector<Eigen::Vector3f> seenWell(const std::string& sequence,
-                                      const std::vector<PosePair>& pairs,
-                                      const SurfaceSamples& truth) {
+SurfaceSamples seenWell(const std::string& sequence, const std::vector<PosePair>& pairs,
+                        const SurfaceSamples& truth) {
   std::map<std::int64_t, Eigen::Isometry3d> views;
   for (std::size_t i = 0; i < pairs.size(); i += kEvery) {
     views[pairs[i].estimate.stamp_ns] = pairs[i].truth.T_world_camera;
@@ -59,7 +58,7 @@ void evaluateMesh(const MeshQuestion& question) {
   const auto pairs = matchPoses(loadSequenceTruth(question.sequence).trajectory,
                                 loadTrajectory(question.run + "/trajectory.txt"));
   const Eigen::Isometry3d T_truth_map = alignPoses(pairs);
-  const std::vector<Eigen::Vector3f> seen = seenWell(question.sequence, pairs, truth);
+  const SurfaceSamples seen = seenWell(question.sequence, pairs, truth);
   const MeshScore score = checkMesh(mesh, surfels, T_truth_map, truth, seen);
   const double surfel_coverage = shareCovered(seen, surfels, T_truth_map);
   if (!question.json) return print(score, surfel_coverage);

@@ -20,9 +20,10 @@ MeshSamples sampleMesh(const TriangleMesh& mesh);
 
 /// A triangle farther than this from the centre of every surfel is invented.
 constexpr float kInvented_m = 0.05F;
-/// True surface is covered where the mesh is so near: half the width of the holes that count, and
-/// the error of the map.
-constexpr float kCovered_m = 0.03F;
+/// True surface is covered where its normal meets the mesh so near, facing the same way: the map may
+/// be off by that, and any hole is one. Or where some of the mesh is really near: rims of the truth
+/// lie beside those of the map. (m)
+constexpr float kCovered_m = 0.10F, kCoveredBeside_m = 0.02F;
 
 /// How good a mesh is.
 struct MeshScore {
@@ -35,13 +36,13 @@ struct MeshScore {
 };
 
 /// A mesh and the surfels that it was made of, both in the frame of the map, against the truth.
-/// `seen`: points of the true surface that a mesh should have (SeenSurface).
+/// `seen`: of the true surface, what a mesh should have (SeenSurface).
 MeshScore checkMesh(const TriangleMesh& mesh, const SurfelArrays& surfels,
                     const Eigen::Isometry3d& T_truth_map, const SurfaceSamples& truth,
-                    const std::vector<Eigen::Vector3f>& seen);
+                    const SurfaceSamples& seen);
 
-/// The share of these points that the surfels alone cover, for comparison; 0 of none.
-double shareCovered(const std::vector<Eigen::Vector3f>& points, const SurfelArrays& surfels,
+/// The share of these samples that the discs of the surfels alone cover, for comparison; 0 of none.
+double shareCovered(const SurfaceSamples& seen, const SurfelArrays& surfels,
                     const Eigen::Isometry3d& T_truth_map);
 
 }  // namespace pf

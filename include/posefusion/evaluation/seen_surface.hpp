@@ -29,8 +29,8 @@ class SeenSurface {
 
   std::size_t views() const { return views_; }
 
-  /// The positions of the samples that were seen well.
-  std::vector<Eigen::Vector3f> seenWell() const;
+  /// The samples that were seen well.
+  SurfaceSamples seenWell() const;
 
  private:
   const SurfaceSamples& truth_;
