@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "map_mesh_pcl.hpp"
 #include "map_surfels.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/io/mesh_file.hpp"
@@ -18,8 +19,16 @@ namespace {
 struct MeshOptions {
   std::string file, output;
   MeshConfig config;
+  std::string method = "nets";
   int threads = 0;  ///< 0: all
 };
+
+TriangleMesh meshBy(const std::string& method, const SurfelArrays& surfels,
+                    const MeshConfig& config) {
+  if (method == "poisson") return poissonMesh(surfels, config);
+  if (method == "greedy") return greedyMesh(surfels, config);
+  return surfelMesh(surfels, config);
+}
 
 void writeMesh(const MeshOptions& options) {
   requireMeshName(options.output);
@@ -30,7 +39,7 @@ void writeMesh(const MeshOptions& options) {
   }
   const SurfelArrays surfels = readStableSurfels(options.file);
   Stopwatch watch;
-  const TriangleMesh mesh = surfelMesh(surfels, options.config);
+  const TriangleMesh mesh = meshBy(options.method, surfels, options.config);
   const double made_s = 1e-3 * watch.lapMs();
   saveMesh(options.output, mesh);
   std::printf("%s: %zu triangles, %zu vertices of %zu surfels in %.2f s\n", options.output.c_str(),
@@ -53,6 +62,11 @@ void addMeshCommand(CLI::App& app) {
                    "the mesh ends so far beyond the last surfel (m): gaps twice as wide close")
       ->capture_default_str();
   command->add_option("--memory-limit", config.memory_limit_mb, "that making it may take (MB)")
+      ->capture_default_str();
+  command
+      ->add_option("--method", options->method,
+                   "nets: signed distance and surface nets; poisson, greedy: those of PCL")
+      ->check(CLI::IsMember({"nets", "poisson", "greedy"}))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "0: all cores")
       ->check(CLI::Range(0, 1024))

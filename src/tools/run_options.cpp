@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/mesh_file.hpp"
 #include "tool.hpp"
 
 namespace pf {
@@ -66,6 +68,12 @@ void addTopicOptions(CLI::App& app, posefusion_ros::InputOptions& reading) {
       ->group("Bags");
 }
 
+/// Throws before the run, not after it, where the mesh cannot be written.
+void requireMeshFile(const std::string& path) {
+  requireMeshName(path);
+  AtomicFile probe(path);
+}
+
 }  // namespace
 
 int runWithOptions(int argc, char** argv, const std::function<int(const RunOptions&)>& run) {
@@ -110,6 +118,8 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
   app.add_flag("--save-masks", options.save_masks, "write mask/ and people.json");
   app.add_option("--save-status", options.status_file,
                  "CSV to write: state, reason, pose and covariance of each frame");
+  app.add_option("--mesh", options.mesh_file,
+                 "mesh of the map to write, *.ply, *.obj or *.glb (posefusion_map mesh has more)");
   app.add_flag("--check-depth", options.check_depth,
                "compare each frame's depth with the map rendered from its pose (slower)");
   app.add_flag("--print-config", print_config, "print all settings and stop");
@@ -122,6 +132,7 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
     if (options.input.empty()) {
       throw InputError("INPUT is missing: a TUM folder or a bag (--help tells more)");
     }
+    if (!options.mesh_file.empty()) requireMeshFile(options.mesh_file);
     return run(options);
   });
 }
