@@ -16,26 +16,6 @@ constexpr float kMostRadius = 0.4F;
 
 }  // namespace
 
-float Disc::Place::toDisc(float radius) const {
-  if (beside <= radius * radius) return above * above;
-  const float rim = std::sqrt(beside) - radius;
-  return above * above + rim * rim;
-}
-
-bool Disc::holds(const Eigen::Vector3f& point, Place& place) const {
-  const Eigen::Vector3f step = point - center;
-  place.above = normal.dot(step);
-  if (std::abs(place.above) > depth) return false;
-  place.beside = std::max(0.0F, step.squaredNorm() - place.above * place.above);
-  return place.beside <= reach * reach;
-}
-
-float Disc::closeness(const Place& place) const {
-  const float beside = 1.0F - place.beside / (reach * reach);
-  const float above = 1.0F - place.above * place.above / (depth * depth);
-  return beside * beside * beside * beside * above;
-}
-
 DiscMaker::DiscMaker(const SurfelArrays& surfels, const MeshConfig& config)
     : surfels_(surfels),
       cell_m_(static_cast<float>(config.cell_m)),

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -26,14 +28,28 @@ struct Disc {
     float beside = 0;  ///< squared, m^2
 
     /// To the disc, squared, m^2.
-    float toDisc(float radius) const;
+    float toDisc(float radius) const {
+      if (beside <= radius * radius) return above * above;
+      const float rim = std::sqrt(beside) - radius;
+      return above * above + rim * rim;
+    }
   };
 
   /// False outside of the cylinder.
-  bool holds(const Eigen::Vector3f& point, Place& place) const;
+  bool holds(const Eigen::Vector3f& point, Place& place) const {
+    const Eigen::Vector3f step = point - center;
+    place.above = normal.dot(step);
+    if (std::abs(place.above) > depth) return false;
+    place.beside = std::max(0.0F, step.squaredNorm() - place.above * place.above);
+    return place.beside <= reach * reach;
+  }
 
   /// Falls smoothly from 1 at the centre to 0 at the hull of the cylinder.
-  float closeness(const Place& place) const;
+  float closeness(const Place& place) const {
+    const float beside = 1.0F - place.beside / (reach * reach);
+    const float above = 1.0F - place.above * place.above / (depth * depth);
+    return beside * beside * beside * beside * above;
+  }
 };
 
 /// Cells of a lattice, `low` to `high` along each axis.

@@ -18,22 +18,22 @@ constexpr int kSide = BlockLattice::kSide, kPatch = kSide + 1;
 constexpr std::size_t kGrain = 8;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
+enum class Layer { after, before };
+
 /// What is known of a block's corners or cells and of a layer of those of its neighbours, after it
 /// or before it.
 template <typename T>
 class Patch {
  public:
-  enum class Layer { after, before };
-
-  Patch(const BlockLattice& lattice, const std::vector<T>& values, std::size_t i, Layer layer,
-        T nothing) {
+  /// `read(i, place)`: that of block i.
+  template <typename Read>
+  Patch(const BlockLattice& lattice, std::size_t i, Layer layer, T nothing, const Read& read) {
     const int side = layer == Layer::after ? 1 : -1;
-    std::array<const T*, 8> source{};
+    std::array<std::size_t, 8> source{};
     for (int n = 0; n < 8; ++n) {
       const Vector3i step(n & 1, n >> 1 & 1, n >> 2);
-      const std::size_t place = n == 0 ? i : lattice.find(lattice.block(i) + side * step);
-      if (place == BlockLattice::kNone) continue;
-      source[static_cast<std::size_t>(n)] = &values[place * BlockLattice::kCorners];
+      source[static_cast<std::size_t>(n)] =
+          n == 0 ? i : lattice.find(lattice.block(i) + side * step);
     }
     const int first = layer == Layer::after ? 0 : -1;
     T* out = values_.data();
@@ -41,23 +41,22 @@ class Patch {
       for (int y = first; y < first + kPatch; ++y) {
         for (int x = first; x < first + kPatch; ++x, ++out) {
           const auto n = static_cast<std::size_t>(beyond(x) | beyond(y) << 1 | beyond(z) << 2);
-          *out = source[n] == nullptr
-                     ? nothing
-                     : source[n][BlockLattice::placeOf((x + kSide) % kSide, (y + kSide) % kSide,
-                                                       (z + kSide) % kSide)];
+          *out = source[n] == BlockLattice::kNone ? nothing : read(source[n], placeOf(x, y, z));
         }
       }
     }
     origin_ = -first * (1 + kPatch + kPatch * kPatch);
   }
 
-  T at(int x, int y, int z) const {
-    return values_[static_cast<std::size_t>(origin_ + x + kPatch * (y + kPatch * z))];
+  T at(const Vector3i& p) const {
+    return values_[static_cast<std::size_t>(origin_ + p.x() + kPatch * (p.y() + kPatch * p.z()))];
   }
-  T at(const Vector3i& p) const { return at(p.x(), p.y(), p.z()); }
 
  private:
   static int beyond(int k) { return k < 0 || k >= kSide ? 1 : 0; }
+  static std::size_t placeOf(int x, int y, int z) {
+    return BlockLattice::placeOf((x + kSide) % kSide, (y + kSide) % kSide, (z + kSide) % kSide);
+  }
 
   std::array<T, kPatch * kPatch * kPatch> values_;
   int origin_ = 0;
@@ -65,6 +64,12 @@ class Patch {
 
 using Distances = Patch<float>;
 using Vertices = Patch<std::uint32_t>;
+
+Distances distancesOf(const DistanceField& field, std::size_t i) {
+  return {field.lattice, i, Layer::after, kUnknown, [&](std::size_t block, std::size_t place) {
+            return field.values[block * BlockLattice::kCorners + place];
+          }};
+}
 
 template <typename Visit>
 void forEachPlace(const Visit& visit) {
@@ -106,15 +111,15 @@ bool crossing(const Distances& distances, const Vector3i& cell, Vector3f& point)
 }
 
 /// The vertices of block i, numbered from 0 in it.
-std::vector<Vector3f> verticesOf(const DistanceField& field, std::size_t i, std::uint32_t* vertex) {
-  const Distances distances(field.lattice, field.values, i, Distances::Layer::after, kUnknown);
+std::vector<Vector3f> verticesOf(const DistanceField& field, std::size_t i, std::uint16_t* place) {
+  const Distances distances = distancesOf(field, i);
   const Vector3i first = field.lattice.firstCorner(i);
   std::vector<Vector3f> points;
   forEachPlace([&](const Vector3i& cell) {
     Vector3f point;
     if (!crossing(distances, cell, point)) return;
-    vertex[BlockLattice::placeOf(cell.x(), cell.y(), cell.z())] =
-        static_cast<std::uint32_t>(points.size());
+    place[BlockLattice::placeOf(cell.x(), cell.y(), cell.z())] =
+        static_cast<std::uint16_t>(points.size());
     points.push_back(field.lattice.point(first + cell) + field.lattice.cell_m() * point);
   });
   return points;
@@ -122,9 +127,11 @@ std::vector<Vector3f> verticesOf(const DistanceField& field, std::size_t i, std:
 
 /// Two triangles across each edge of block i that crosses the surface.
 std::vector<std::array<std::uint32_t, 3>> trianglesOf(const DistanceField& field, std::size_t i,
-                                                      const std::vector<std::uint32_t>& vertex) {
-  const Distances distances(field.lattice, field.values, i, Distances::Layer::after, kUnknown);
-  const Vertices vertices(field.lattice, vertex, i, Vertices::Layer::before, SurfaceNet::kNone);
+                                                      const SurfaceNet& net) {
+  const Distances distances = distancesOf(field, i);
+  const Vertices vertices(
+      field.lattice, i, Layer::before, SurfaceNet::kNone,
+      [&](std::size_t block, std::size_t cell) { return net.vertex(block, cell); });
   std::vector<std::array<std::uint32_t, 3>> triangles;
   forEachPlace([&](const Vector3i& c) {
     if (vertices.at(c) == SurfaceNet::kNone) return;
@@ -167,25 +174,22 @@ DistanceField::DistanceField(BlockLattice of)
 SurfaceNet surfaceNet(const DistanceField& field) {
   const std::size_t blocks = field.lattice.size();
   SurfaceNet net;
-  net.vertex.assign(field.values.size(), SurfaceNet::kNone);
+  net.place.assign(field.values.size(), SurfaceNet::kNoPlace);
   std::vector<std::vector<Vector3f>> points(blocks);
   parallelFor(blocks, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      points[i] = verticesOf(field, i, &net.vertex[i * BlockLattice::kCorners]);
+      points[i] = verticesOf(field, i, &net.place[i * BlockLattice::kCorners]);
     }
   });
-  std::uint32_t before = 0;
+  std::size_t before = 0;
   for (std::size_t i = 0; i < blocks; ++i) {
-    for (std::size_t k = 0; k < BlockLattice::kCorners && !points[i].empty(); ++k) {
-      std::uint32_t& vertex = net.vertex[i * BlockLattice::kCorners + k];
-      if (vertex != SurfaceNet::kNone) vertex += before;
-    }
-    before += static_cast<std::uint32_t>(points[i].size());
+    net.first.push_back(static_cast<std::uint32_t>(before));
+    before += points[i].size();
   }
   net.positions = joined(points);
   std::vector<std::vector<std::array<std::uint32_t, 3>>> triangles(blocks);
   parallelFor(blocks, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) triangles[i] = trianglesOf(field, i, net.vertex);
+    for (std::size_t i = begin; i < end; ++i) triangles[i] = trianglesOf(field, i, net);
   });
   net.triangles = joined(triangles);
   return net;

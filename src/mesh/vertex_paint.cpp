@@ -2,7 +2,6 @@
 #include "vertex_paint.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -57,43 +56,70 @@ MeshColor toColor(const Told& told) {
   return mean.cwiseMax(0.0F).cwiseMin(255.0F).array().round().cast<unsigned char>();
 }
 
+/// Tells the vertices of single blocks.
+class Painter {
+ public:
+  Painter(const SurfelArrays& surfels, const DiscBlocks& blocks, const MeshConfig& config,
+          SurfaceNet& net, PaintedVertices& out)
+      : maker_(surfels, config),
+        blocks_(blocks),
+        net_(net),
+        out_(out),
+        most_m_(0.5F * blocks.lattice.cell_m()),
+        bridge_m_(static_cast<float>(config.bridge_m)),
+        least_surfels_(config.least_surfels) {}
+
+  void paint(std::size_t i, std::vector<Told>& told) {
+    const std::size_t first = net_.first[i];
+    const std::size_t last = i + 1 < net_.first.size() ? net_.first[i + 1] : net_.positions.size();
+    if (first == last) return;
+    told.assign(last - first, {});
+    const auto pointAt = [&](std::size_t cell, const Vector3i&, Vector3f& point) {
+      const std::uint32_t vertex = net_.vertex(i, cell);
+      if (vertex == SurfaceNet::kNone) return false;
+      point = net_.positions[vertex];
+      return true;
+    };
+    forEachPointOf(maker_, blocks_, i, pointAt,
+                   [&](std::size_t cell, const Disc& disc, const Disc::Place& where) {
+                     const std::uint32_t vertex = net_.vertex(i, cell);
+                     const float same = disc.normal.dot(out_.normals[vertex]);
+                     if (same > kSameSide) told[vertex - first].add(disc, where, same);
+                   });
+    for (std::size_t k = 0; k < told.size(); ++k) finish(told[k], first + k);
+  }
+
+ private:
+  void finish(const Told& told, std::size_t vertex) {
+    if (!(told.weight > 0)) return;
+    out_.normals[vertex] = told.normal.normalized();
+    const float step = std::clamp(told.distance / told.weight, -most_m_, most_m_);
+    net_.positions[vertex] -= step * out_.normals[vertex];
+    out_.colors[vertex] = toColor(told);
+    const bool near = told.nearest <= bridge_m_ * bridge_m_;
+    out_.seen[vertex] = near && told.surfels >= least_surfels_ ? 1 : 0;
+  }
+
+  DiscMaker maker_;
+  const DiscBlocks& blocks_;
+  SurfaceNet& net_;
+  PaintedVertices& out_;
+  float most_m_, bridge_m_;
+  int least_surfels_;
+};
+
 }  // namespace
 
 PaintedVertices paint(const SurfelArrays& surfels, const DiscBlocks& blocks,
                       const MeshConfig& config, SurfaceNet& net) {
-  const DiscMaker maker(surfels, config);
-  const float most_m = 0.5F * blocks.lattice.cell_m(), bridge = static_cast<float>(config.bridge_m);
   PaintedVertices out;
   out.normals = facings(net);
   out.colors.resize(net.positions.size());
   out.seen.resize(net.positions.size());
+  Painter painter(surfels, blocks, config, net, out);
   parallelFor(blocks.lattice.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::array<Told, BlockLattice::kCorners> told;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t* vertex = &net.vertex[i * BlockLattice::kCorners];
-      const auto pointAt = [&](std::size_t place, const Vector3i&, Vector3f& point) {
-        if (vertex[place] == SurfaceNet::kNone) return false;
-        point = net.positions[vertex[place]];
-        return true;
-      };
-      told.fill({});
-      forEachPointOf(maker, blocks, i, pointAt,
-                     [&](std::size_t place, const Disc& disc, const auto& where) {
-                       const float same = disc.normal.dot(out.normals[vertex[place]]);
-                       if (same > kSameSide) told[place].add(disc, where, same);
-                     });
-      for (std::size_t place = 0; place < BlockLattice::kCorners; ++place) {
-        const Told& t = told[place];
-        if (vertex[place] == SurfaceNet::kNone || !(t.weight > 0)) continue;
-        Vector3f& normal = out.normals[vertex[place]];
-        normal = t.normal.normalized();
-        const float step = std::clamp(t.distance / t.weight, -most_m, most_m);
-        net.positions[vertex[place]] -= step * normal;
-        out.colors[vertex[place]] = toColor(t);
-        out.seen[vertex[place]] =
-            t.surfels >= config.least_surfels && t.nearest <= bridge * bridge ? 1 : 0;
-      }
-    }
+    std::vector<Told> told;
+    for (std::size_t i = begin; i < end; ++i) painter.paint(i, told);
   });
   return out;
 }

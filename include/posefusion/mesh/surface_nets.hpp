@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -21,10 +22,18 @@ struct DistanceField {
 /// The zero level of a field, and which cell each corner of a triangle is of.
 struct SurfaceNet {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint16_t kNoPlace = 0xffff;
 
   std::vector<Eigen::Vector3f> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> vertex;  ///< of each cell of each block; kNone where there is none
+  std::vector<std::uint32_t> first;  ///< vertex of each block
+  std::vector<std::uint16_t> place;  ///< of each cell's vertex after that; kNoPlace: it has none
+
+  /// The vertex of a cell of block i, or kNone.
+  std::uint32_t vertex(std::size_t i, std::size_t cell) const {
+    const std::uint16_t after = place[i * BlockLattice::kCorners + cell];
+    return after == kNoPlace ? kNone : first[i] + after;
+  }
 };
 
 /// Naive surface nets (S. Gibson, "Constrained elastic surface nets", 1998): a vertex in each cell
