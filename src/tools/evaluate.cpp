@@ -104,10 +104,11 @@ CLI::App* addSurfaceCommand(CLI::App& app, PairQuestion& question) {
   return command;
 }
 
-CLI::App* addMeshCommand(CLI::App& app, MeshQuestion& question) {
-  auto* command = app.add_subcommand(
-      "mesh", "a mesh of a run's map against the true surface of a simulated room");
-  command->add_option("mesh", question.mesh, "*.ply of posefusion_map mesh")->required();
+/// `of`: words for what the first file is.
+CLI::App* addMadeCommand(CLI::App& app, const char* name, const char* of, const char* help,
+                         SurfaceQuestion& question) {
+  auto* command = app.add_subcommand(name, help);
+  command->add_option(name, question.surface, of)->required();
   command->add_option("run", question.run, "output folder of posefusion_run")
       ->required()
       ->transform(newest());
@@ -136,7 +137,7 @@ int main(int argc, char** argv) {
   TrajectoryQuestion trajectory;
   RunQuestion run;
   KnownQuestion known;
-  MeshQuestion mesh;
+  SurfaceQuestion mesh, grid;
   PairQuestion masks, covariance, surface, loops;
   const CLI::Option* estimate = addTrajectoryOptions(app, trajectory);
   const CLI::App* run_command = addRunCommand(app, run);
@@ -144,7 +145,12 @@ int main(int argc, char** argv) {
   const CLI::App* masks_command = addMasksCommand(app, masks);
   const CLI::App* covariance_command = addCovarianceCommand(app, covariance);
   const CLI::App* surface_command = addSurfaceCommand(app, surface);
-  const CLI::App* mesh_command = addMeshCommand(app, mesh);
+  const CLI::App* mesh_command =
+      addMadeCommand(app, "mesh", "*.ply of posefusion_map mesh",
+                     "a mesh of a run's map against the true surface of a simulated room", mesh);
+  const CLI::App* grid_command =
+      addMadeCommand(app, "grid", "*.yaml of posefusion_map grid",
+                     "a grid of a run's map against the true plan of a simulated room", grid);
   const CLI::App* loops_command = addLoopsCommand(app, loops);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
@@ -159,6 +165,8 @@ int main(int argc, char** argv) {
       evaluateSurface(surface.checked, surface.truth, surface.json);
     } else if (*mesh_command) {
       evaluateMesh(mesh);
+    } else if (*grid_command) {
+      evaluateGrid(grid);
     } else if (*loops_command) {
       evaluateLoops(loops.checked, loops.truth, loops.json);
     } else if (*estimate) {

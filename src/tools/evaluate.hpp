@@ -33,8 +33,10 @@ struct KnownQuestion {
 };
 
 /// posefusion_evaluate mesh MESH RUN_DIR SEQUENCE
-struct MeshQuestion {
-  std::string mesh, run, sequence;
+/// posefusion_evaluate grid GRID RUN_DIR SEQUENCE
+struct SurfaceQuestion {
+  std::string surface;  ///< mesh or grid
+  std::string run, sequence;
   bool json = false;
 };
 
@@ -42,7 +44,8 @@ struct MeshQuestion {
 void evaluateTrajectory(const TrajectoryQuestion& question);
 void evaluateRun(const RunQuestion& question);
 void evaluateKnown(const KnownQuestion& question);
-void evaluateMesh(const MeshQuestion& question);
+void evaluateMesh(const SurfaceQuestion& question);
+void evaluateGrid(const SurfaceQuestion& question);
 /// posefusion_evaluate masks TRUTH_DIR MASK_DIR
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
 /// posefusion_evaluate covariance TRUTH STATUS_FILE

@@ -51,8 +51,8 @@ void print(const MeshScore& score, double surfel_coverage) {
 
 }  // namespace
 
-void evaluateMesh(const MeshQuestion& question) {
-  const TriangleMesh mesh = loadMesh(question.mesh);
+void evaluateMesh(const SurfaceQuestion& question) {
+  const TriangleMesh mesh = loadMesh(question.surface);
   const SurfelArrays surfels = loadMap(question.run + "/map.ply");
   const SurfaceSamples truth = trueSurface(question.sequence);
   const auto pairs = matchPoses(loadSequenceTruth(question.sequence).trajectory,

@@ -10,6 +10,7 @@
 #include "map_calibration.hpp"
 #include "map_merge.hpp"
 #include "map_mesh.hpp"
+#include "map_plans.hpp"
 #include "map_refine.hpp"
 #include "map_surfels.hpp"
 #include "posefusion/core/error.hpp"
@@ -167,6 +168,7 @@ int lookIntoMap(int argc, char** argv) {
       ->required();
   merging->add_option("-o,--output", merged, "the new file")->required();
   addMeshCommand(app);
+  addGridCommand(app);
   CLI11_PARSE(app, argc, argv);
   if (*merging) {
     mergeMaps(file, second, merged);
