@@ -169,6 +169,9 @@ int lookIntoMap(int argc, char** argv) {
   merging->add_option("-o,--output", merged, "the new file")->required();
   addMeshCommand(app);
   addGridCommand(app);
+  addPlanCommand(app);
+  addOctomapCommand(app);
+  addCloudCommand(app);
   CLI11_PARSE(app, argc, argv);
   if (*merging) {
     mergeMaps(file, second, merged);
