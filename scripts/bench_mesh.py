@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The part `mesh` of scripts/bench: meshes of maps against the true surface of the room, by our method and
-by those of PCL."""
+by those of PCL, and grids against its plan."""
 import json
 import re
 
@@ -24,7 +24,18 @@ class Mesh(Runs):
             self.row(f"{name}, mesh against PCL's Poisson, time", ours[0] / others["poisson"][0], "x", 0.5, digits=2)
             self.row(f"{name}, mesh against PCL's Poisson, median", ours[1] / others["poisson"][1], "x", 1.0,
                      digits=2)
+            self.grid_rows(name, sequence, folder)
         self.big_mesh_rows(folder)
+
+    def grid_rows(self, name, sequence, folder):
+        """The plan for a robot's navigation against the true one."""
+        file = self.output / f"{sequence.name}_grid.yaml"
+        call(PROGRAMS / "posefusion_map", "grid", folder / "map.pfdb", "-o", file)
+        found = self.evaluate("grid", file, folder, sequence)
+        self.row(f"{name}, cells of 5 cm that are right, of {found['seen']} seen", 100 * found["share"], "%", 97,
+                 most=False, digits=2)
+        self.row(f"{name}, of {found['false_free'] + found['false_occupied']} wrong ones right one cell beside",
+                 found["near"], "", digits=0)
 
     def mesh_rows(self, name, sequence, folder, method, surfels=None):
         """(seconds, median in metres). Bars are for our own method, where `surfels` are given."""

@@ -81,5 +81,48 @@ TEST_F(MapSurfaceToolTest, AMeshThatCannotBeIsRefusedAndNothingIsLeft) {
   EXPECT_TRUE(hasSaid("magic")) << said;
 }
 
+TEST_F(MapSurfaceToolTest, AWallAloneHasNoFloorToStandOn) {
+  EXPECT_EQ(run({"grid", file, "-o", folder / "grid.yaml"}), 1);
+  EXPECT_TRUE(hasSaid(file + ": the map has no floor: 0 stable surfels face up")) << said;
+  EXPECT_EQ(run({"plan", file, "-o", folder / "plan.svg"}), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder / "plan.svg"));
+  EXPECT_EQ(run({"grid", file, "-o", folder / "grid.txt"}), 1);
+  EXPECT_TRUE(hasSaid("expected .yaml")) << said;
+}
+
+TEST_F(MapSurfaceToolTest, AFloorGivesGridAndPlan) {
+  SurfelArrays floor;
+  example.map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    floor.append(s, &index, 1);
+  });
+  SurfelArrays wall = floor;  // y of the map is down, z ahead: the wall is where the floor ends
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    floor.z[i] = floor.y[i] + 1.3F;
+    floor.y[i] = 0.8F;
+    floor.nz[i] = 0;
+    floor.ny[i] = -1;
+  }
+  wall.append(floor);
+  const std::string map = mapWith(wall, "room.pfdb");
+  EXPECT_EQ(run({"grid", map, "-o", folder / "grid.yaml"}), 0) << said;
+  EXPECT_TRUE(hasSaid("the map leans by 0.0 degrees")) << said;
+  EXPECT_TRUE(std::filesystem::exists(folder / "grid.pgm"));
+  EXPECT_EQ(run({"plan", map, "-o", folder / "plan.svg", "--cut", "0.5"}), 0) << said;
+  EXPECT_NE(readFile(folder / "plan.svg").find("</svg>"), std::string::npos);
+}
+
+TEST_F(MapSurfaceToolTest, CloudAndOctreeAreWritten) {
+  EXPECT_EQ(run({"cloud", file, "-o", folder / "a.pcd", "--voxel", "0.1"}), 0) << said;
+  EXPECT_TRUE(hasSaid(" points")) << said;
+  EXPECT_EQ(run({"cloud", file, "-o", folder / "a.las"}), 1);
+  EXPECT_TRUE(hasSaid("expected .pcd or .ply")) << said;
+  EXPECT_EQ(run({"octomap", file, "-o", folder / "a.bt"}), 0) << said;
+  EXPECT_EQ(readFile(folder / "a.bt").substr(0, 28), "# Octomap OcTree binary file");
+  EXPECT_EQ(run({"octomap", file, "-o", folder / "a.ot"}), 1);
+  EXPECT_EQ(run({"octomap", mapWith({}, "empty.pfdb"), "-o", folder / "b.bt"}), 1);
+  EXPECT_TRUE(hasSaid("no stable surfels")) << said;
+}
+
 }  // namespace
 }  // namespace pf

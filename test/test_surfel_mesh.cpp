@@ -171,7 +171,7 @@ std::string refusal(const SurfelArrays& surfels, const MeshConfig& config) {
 
 TEST(SurfelMesh, WhatCannotBeMadeIsRefused) {
   EXPECT_EQ(refusal({}, {}),
-            "mesh: 0 stable surfels are too few for a surface, expected at least 3 beside each "
+            "mesh: 0 stable surfels are too few for a surface, expected at least 2 beside each "
             "other");
   SurfelArrays one;
   add(one, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});

@@ -11,6 +11,7 @@ namespace pf {
 namespace {
 
 constexpr double kMargin_mm = 10, kLegend_mm = 16;
+constexpr double kSmooth_cells = 0.75;   // steps of borders that lie across the grid become lines
 constexpr double kLeastThing_m2 = 0.01;  // less is a speck
 constexpr double kLeastWall_m = 0.15;    // a shorter line is a thing
 
@@ -36,22 +37,21 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// All borders of a mask of cells, as one path to be filled by the even-odd rule.
+/// All borders of a mask of cells, as one path to be filled by the even-odd rule. They lie on the
+/// middles of cells: a line as wide as a cell belongs to the area.
 std::string areaPath(const OccupancyGrid& grid, const cv::Mat& mask, const Paper& paper) {
-  cv::Mat large;  // so that borders lie on the sides of cells, not on their middles
-  cv::copyMakeBorder(mask, large, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
   std::vector<std::vector<cv::Point>> borders;
-  cv::findContours(large, borders, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
+  cv::findContours(mask.clone(), borders, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
   std::string path;
   for (const auto& border : borders) {
     const double area_m2 = cv::contourArea(border) * grid.cell_m * grid.cell_m;
     if (area_m2 < kLeastThing_m2) continue;
     std::vector<cv::Point> smooth;
-    cv::approxPolyDP(border, smooth, 1.0, true);
+    cv::approxPolyDP(border, smooth, kSmooth_cells, true);
     char command = 'M';
     for (const cv::Point& p : smooth) {
-      path += command + number(paper.x(grid.low_x_m + grid.cell_m * (p.x - 0.5))) + " " +
-              number(paper.y(grid.low_y_m + grid.cell_m * (p.y - 0.5)));
+      path += command + number(paper.x(grid.low_x_m + grid.cell_m * (p.x + 0.5))) + " " +
+              number(paper.y(grid.low_y_m + grid.cell_m * (p.y + 0.5)));
       command = 'L';
     }
     path += "Z";
@@ -130,18 +130,19 @@ std::string floorPlan(const OccupancyGrid& grid, const TriangleMesh& mesh,
   const double width_mm = 2 * kMargin_mm + mm_per_cell * part.width;
   const double plan_mm = 2 * kMargin_mm + mm_per_cell * part.height;
   const std::string size = number(width_mm) + " " + number(plan_mm + kLegend_mm);
-  const auto path = [](const std::string& d, const char* style) {
-    return "<path d=\"" + d + "\" " + style + "/>\n";
+  const auto area = [&](std::int8_t state, bool equal, const char* color) {
+    const cv::Mat mask = equal ? grid.cells == state : grid.cells != state;
+    return "<path d=\"" + areaPath(grid, mask, paper) + "\" fill=\"" + color + "\" stroke=\"" +
+           color + "\" stroke-width=\"" + number(mm_per_cell) +
+           "\" stroke-linejoin=\"round\" fill-rule=\"evenodd\"/>\n";
   };
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(width_mm) +
          "mm\" height=\"" + number(plan_mm + kLegend_mm) + "mm\" viewBox=\"0 0 " + size +
          "\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
-         path(areaPath(grid, grid.cells != OccupancyGrid::kUnknown, paper),
-              "fill=\"#f3efe6\" fill-rule=\"evenodd\"") +
-         path(areaPath(grid, grid.cells == OccupancyGrid::kOccupied, paper),
-              "fill=\"#c9c3b6\" fill-rule=\"evenodd\"") +
-         path(wallPath(cutLevel(mesh, static_cast<float>(config.cut_m)), paper),
-              "fill=\"none\" stroke=\"#222\" stroke-width=\"0.5\" stroke-linejoin=\"round\"") +
+         area(OccupancyGrid::kUnknown, false, "#f3efe6") +
+         area(OccupancyGrid::kOccupied, true, "#c9c3b6") + "<path d=\"" +
+         wallPath(cutLevel(mesh, static_cast<float>(config.cut_m)), paper) +
+         "\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.5\" stroke-linejoin=\"round\"/>\n" +
          legend(config, paper, width_mm, plan_mm) + "</svg>\n";
 }
 
