@@ -20,9 +20,9 @@ MeshSamples sampleMesh(const TriangleMesh& mesh);
 
 /// A triangle farther than this from the centre of every surfel is invented.
 constexpr float kInvented_m = 0.05F;
-/// True surface is covered where its normal meets the mesh so near, facing the same way: the map may
-/// be off by that, and any hole is one. Or where some of the mesh is really near: rims of the truth
-/// lie beside those of the map. (m)
+/// True surface is covered where its normal meets the mesh so near, facing the same way: the map
+/// may be off by that, and any hole is one. Or where some of the mesh is really near: rims of the
+/// truth lie beside those of the map. (m)
 constexpr float kCovered_m = 0.10F, kCoveredBeside_m = 0.02F;
 
 /// How good a mesh is.
