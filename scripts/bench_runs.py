@@ -11,6 +11,9 @@ from bench_report import Report, call
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAMS = ROOT / "devel" / "lib" / "posefusion"
 
+# The simulator's people are made of these too.
+BODY_SOURCES = ("block_lattice.cpp", "polygonise.cpp", "surface_nets.cpp")
+
 
 def note(text):
     print(f"  {text} ...", file=sys.stderr)
@@ -21,6 +24,7 @@ def fingerprint(scenario, arguments):
     program's age: a build that changes no simulator costs no eight minutes of rendering."""
     digest = hashlib.sha256("\n".join(arguments).encode())
     sources = sorted(p for p in (ROOT / "src" / "simulator").rglob("*") if p.is_file())
+    sources += [ROOT / "src" / "mesh" / name for name in BODY_SOURCES]
     scenarios = sorted((ROOT / "config" / "scenarios").glob("*.yaml"))
     by_name = {path.stem: path.read_text() for path in scenarios}
     for path in sources:

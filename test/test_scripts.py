@@ -13,6 +13,7 @@ SOURCES = ("include", "src", "test", "scripts", "examples", "cmake", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
+          "mesh", "grid",
           "loop", "slam", "io", "evaluation", "run", "simulator", "ros", "openni2",
           "nodelets", "tools", "viewer")
 FORMATTER = "version 14."  # of clang-format: others lay out some lines differently

@@ -62,26 +62,30 @@ bool isOneSurface(float at, const std::vector<float>& truth) {
 
 }  // namespace
 
-std::vector<float> distancesToSurface(const SurfelArrays& surfels,
-                                      const Eigen::Isometry3d& T_truth_map,
+std::vector<float> distancesToSurface(const std::vector<Eigen::Vector3f>& points,
                                       const SurfaceSamples& truth) {
   const PointGrid grid(truth.positions);
-  const MovedSurfels map = moved(surfels, T_truth_map);
-  std::vector<float> distances(surfels.size(), kFarFromSurface_m);
-  parallelFor(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> distances(points.size(), kFarFromSurface_m);
+  parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       float& least = distances[i];
       // The farther it is, the wider the search.
       for (float reach = kFirstSearch_m; least > reach && reach < 2 * kFarFromSurface_m;
            reach *= 2) {
-        grid.visit(boxAround(map.positions[i], reach + truth.radius_m), [&](std::size_t k) {
-          least = std::min(
-              least, distanceToDisc(map.positions[i], grid[k], truth.normals[k], truth.radius_m));
+        grid.visit(boxAround(points[i], reach + truth.radius_m), [&](std::size_t k) {
+          least =
+              std::min(least, distanceToDisc(points[i], grid[k], truth.normals[k], truth.radius_m));
         });
       }
     }
   });
   return distances;
+}
+
+std::vector<float> distancesToSurface(const SurfelArrays& surfels,
+                                      const Eigen::Isometry3d& T_truth_map,
+                                      const SurfaceSamples& truth) {
+  return distancesToSurface(moved(surfels, T_truth_map).positions, truth);
 }
 
 std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,

@@ -39,6 +39,20 @@ void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char*
   std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
 
+/// `addAll(add)` calls add(surfels, i, motion) `count` times.
+template <typename AddAll>
+void write(const std::string& path, std::size_t count, const AddAll& addAll) {
+  AtomicFile file(path);
+  file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
+                             "surfels of posefusion: map frame, metres");
+  std::array<char, kVertexBytes> vertex{};
+  addAll([&](const SurfelArrays& surfels, std::size_t i, const RigidMotion& motion) {
+    pack(surfels, i, motion, vertex.data());
+    file.stream().write(vertex.data(), vertex.size());
+  });
+  file.commit();
+}
+
 /// Throws where the file has other vertices than saveMap() writes.
 PlyVertices findVertices(const std::string& file) {
   PlyVertices vertices = readPlyHeader(file);
@@ -79,17 +93,19 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map) {
   const RigidMotion motion(T_file_map);
   const std::size_t count = savedSurfels(map);
-  AtomicFile file(path);
-  file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
-                             "surfels of posefusion: map frame, metres");
-  std::array<char, kVertexBytes> vertex{};
-  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& surfels, std::size_t i) {
-    if (!map.isStable(surfels, i)) return;
-    pack(surfels, i, motion, vertex.data());
-    file.stream().write(vertex.data(), vertex.size());
+  write(path, count, [&](const auto& add) {
+    map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& surfels, std::size_t i) {
+      if (map.isStable(surfels, i)) add(surfels, i, motion);
+    });
   });
-  file.commit();
   return count;
+}
+
+void saveSurfels(const std::string& path, const SurfelArrays& surfels) {
+  const RigidMotion none(Eigen::Isometry3d::Identity());
+  write(path, surfels.size(), [&](const auto& add) {
+    for (std::size_t i = 0; i < surfels.size(); ++i) add(surfels, i, none);
+  });
 }
 
 SurfelArrays loadMap(const std::string& path) {

@@ -101,7 +101,7 @@ void Avatar::addBurden() {
   add(polygonise(distance, box, 0.02F), blobs, distance);
 }
 
-void Avatar::add(const Polygonised& part, const std::vector<Blob>& blobs,
+void Avatar::add(const TriangleMesh& part, const std::vector<Blob>& blobs,
                  const std::function<float(const Vector3f&)>& distance) {
   const auto first = static_cast<std::uint32_t>(rest_.size());
   for (const auto& t : part.triangles) {

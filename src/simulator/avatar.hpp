@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "posefusion/mesh/surface_nets.hpp"
 #include "simulator/body_shape.hpp"
 #include "simulator/outfit.hpp"
 #include "simulator/rig.hpp"
-#include "simulator/surface_nets.hpp"
 
 namespace pf::simulator {
 
@@ -40,7 +40,7 @@ class Avatar {
   void skinNormals(const Posture& posture, std::vector<Eigen::Vector3f>& normals) const;
 
  private:
-  void add(const Polygonised& part, const std::vector<Blob>& blobs,
+  void add(const TriangleMesh& part, const std::vector<Blob>& blobs,
            const std::function<float(const Eigen::Vector3f&)>& distance);
   void addHead(const Outfit& outfit, float cell_m);
   void addHands(float cell_m);

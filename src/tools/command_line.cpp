@@ -59,6 +59,12 @@ CommandLine* CommandLine::addCommand(const std::string& name, const std::string&
   return commands_.back().get();
 }
 
+void CommandLine::act() const {
+  for (const auto& command : commands_) {
+    if (*command && command->action_) command->action_();
+  }
+}
+
 CommandLine* CommandLine::findCommand(const std::string& name) const {
   for (const auto& command : commands_) {
     if (command->lastName() == name) return command.get();

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "command_option.hpp"
@@ -33,6 +35,11 @@ class CommandLine {
   /// Its name is the first word of the command line. A program without options of its own requires
   /// one of its subcommands.
   CommandLine* addCommand(const std::string& name, const std::string& help);
+
+  /// What act() does where this subcommand is named.
+  void does(std::function<void()> action) { action_ = std::move(action); }
+  /// Does it. Nothing where the subcommand that was named has none.
+  void act() const;
 
   /// Whether this subcommand is the one that was named.
   explicit operator bool() const { return named_; }
@@ -67,6 +74,7 @@ class CommandLine {
   std::string about_, name_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<std::unique_ptr<CommandLine>> commands_;
+  std::function<void()> action_;
   bool named_ = false;
 };
 

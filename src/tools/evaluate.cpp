@@ -100,6 +100,19 @@ CommandLine* addSurfaceCommand(CommandLine& app, PairQuestion& question) {
   return command;
 }
 
+/// `of`: words for what the first file is.
+CommandLine* addMadeCommand(CommandLine& app, const char* name, const char* of, const char* help,
+                            SurfaceQuestion& question) {
+  auto* command = app.addCommand(name, help);
+  command->addOption(name, question.surface, of)->required();
+  command->addOption("run", question.run, "output folder of posefusion_run")
+      ->required()
+      ->check(newest());
+  command->addOption("sequence", question.sequence, "sequence with scene_points.ply")->required();
+  command->addFlag("--json", question.json, "print JSON");
+  return command;
+}
+
 CommandLine* addLoopsCommand(CommandLine& app, PairQuestion& question) {
   auto* command =
       app.addCommand("loops", "the loops that a map was corrected by against true poses");
@@ -119,6 +132,7 @@ int main(int argc, char** argv) {
   TrajectoryQuestion trajectory;
   RunQuestion run;
   KnownQuestion known;
+  SurfaceQuestion mesh, grid;
   PairQuestion masks, covariance, surface, loops;
   const Option* estimate = addTrajectoryOptions(app, trajectory);
   const CommandLine* run_command = addRunCommand(app, run);
@@ -126,6 +140,12 @@ int main(int argc, char** argv) {
   const CommandLine* masks_command = addMasksCommand(app, masks);
   const CommandLine* covariance_command = addCovarianceCommand(app, covariance);
   const CommandLine* surface_command = addSurfaceCommand(app, surface);
+  const CommandLine* mesh_command =
+      addMadeCommand(app, "mesh", "*.ply of posefusion_map mesh",
+                     "a mesh of a run's map against the true surface of a simulated room", mesh);
+  const CommandLine* grid_command =
+      addMadeCommand(app, "grid", "*.yaml of posefusion_map grid",
+                     "a grid of a run's map against the true plan of a simulated room", grid);
   const CommandLine* loops_command = addLoopsCommand(app, loops);
   return runTool(app, argc, argv, [&] {
     if (*run_command) {
@@ -138,6 +158,10 @@ int main(int argc, char** argv) {
       evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
     } else if (*surface_command) {
       evaluateSurface(surface.checked, surface.truth, surface.json);
+    } else if (*mesh_command) {
+      evaluateMesh(mesh);
+    } else if (*grid_command) {
+      evaluateGrid(grid);
     } else if (*loops_command) {
       evaluateLoops(loops.checked, loops.truth, loops.json);
     } else if (*estimate) {

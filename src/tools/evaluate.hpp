@@ -32,10 +32,20 @@ struct KnownQuestion {
   bool json = false;
 };
 
+/// posefusion_evaluate mesh MESH RUN_DIR SEQUENCE
+/// posefusion_evaluate grid GRID RUN_DIR SEQUENCE
+struct SurfaceQuestion {
+  std::string surface;  ///< mesh or grid
+  std::string run, sequence;
+  bool json = false;
+};
+
 /// Each prints its answer on stdout. They throw InputError.
 void evaluateTrajectory(const TrajectoryQuestion& question);
 void evaluateRun(const RunQuestion& question);
 void evaluateKnown(const KnownQuestion& question);
+void evaluateMesh(const SurfaceQuestion& question);
+void evaluateGrid(const SurfaceQuestion& question);
 /// posefusion_evaluate masks TRUTH_DIR MASK_DIR
 void evaluateMasks(const std::string& truth, const std::string& masks, bool json);
 /// posefusion_evaluate covariance TRUTH STATUS_FILE

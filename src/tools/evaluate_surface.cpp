@@ -7,30 +7,16 @@
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/evaluation/surface_check.hpp"
 #include "posefusion/io/map_file.hpp"
-#include "posefusion/io/ply.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/sequence_facts.hpp"
+#include "true_surface.hpp"
 
 namespace pf {
-namespace {
-
-SurfaceSamples samplesOf(const std::string& path) {
-  SurfaceSamples samples;
-  for (const SurfacePoint& point : loadPoints(path)) {
-    samples.positions.push_back(point.position);
-    samples.normals.push_back(point.normal);
-  }
-  return samples;
-}
-
-}  // namespace
-
 void evaluateSurface(const std::string& run, const std::string& sequence, bool json) {
   const SurfelArrays surfels = loadMap(run + "/map.ply");
   const auto pairs =
       matchPoses(loadSequenceTruth(sequence).trajectory, loadTrajectory(run + "/trajectory.txt"));
-  const SurfaceScore score =
-      checkSurface(surfels, alignPoses(pairs), samplesOf(sequence + "/scene_points.ply"));
+  const SurfaceScore score = checkSurface(surfels, alignPoses(pairs), trueSurface(sequence));
   if (json) {
     const nlohmann::ordered_json out = {{"surfels", score.surfels},
                                         {"median_m", score.median_m},

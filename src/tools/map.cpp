@@ -6,8 +6,10 @@
 
 #include "map_calibration.hpp"
 #include "map_merge.hpp"
+#include "map_mesh.hpp"
+#include "map_plans.hpp"
 #include "map_refine.hpp"
-#include "posefusion/config/yaml_map.hpp"
+#include "map_surfels.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
@@ -16,10 +18,8 @@
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/map_repair.hpp"
 #include "posefusion/io/ply.hpp"
-#include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/plan_picture.hpp"
-#include "posefusion/slam/config.hpp"
 #include "tool.hpp"
 
 namespace pf {
@@ -98,15 +98,6 @@ Trajectory trajectoryOf(const MapContent& content) {
   return trajectory;
 }
 
-SurfelMap mapOf(const MapReader& reader, const MapContent& content, const std::string& file) {
-  Config config;
-  if (!content.settings.empty()) applyYaml(config, parseYaml(content.settings, file), file);
-  config.map.memory_limit_mb = 1e6;
-  SurfelMap map(config.map);
-  map.restore(reader.surfels(), content.frame);
-  return map;
-}
-
 void exportKeyframes(const MapReader& reader, const MapContent& content,
                      const std::string& folder) {
   makeFolder(folder);
@@ -122,7 +113,7 @@ void exportKeyframes(const MapReader& reader, const MapContent& content,
 void exportAll(const std::string& file, const std::string& folder) {
   const MapReader reader(file);
   const MapContent content = reader.content();
-  const Eigen::Isometry3d T_world_map = placeOf(content).value_or(bodyFromOptical());
+  const Eigen::Isometry3d T_world_map = worldOf(content);
   makeFolder(folder);
   const std::size_t stable =
       saveMap(folder + "/map.ply", mapOf(reader, content, file), T_world_map);
@@ -152,9 +143,9 @@ int lookIntoMap(int argc, char** argv) {
   };
   const CommandLine* info = command("info", "prints what is in it");
   const CommandLine* checking = command("check", "reads all of it; exit code 1 when it is damaged");
-  command("export", "writes map.ply trajectory.txt keyframes/ plan.png")
-      ->addOption("-o,--output", folder, "folder to write into")
-      ->required();
+  CommandLine* const exporting =
+      command("export", "writes map.ply trajectory.txt keyframes/ plan.png");
+  exporting->addOption("-o,--output", folder, "folder to write into")->required();
   std::string repaired;
   CommandLine* const repairing =
       command("repair", "writes what can be read of a damaged map into a new file");
@@ -174,6 +165,11 @@ int lookIntoMap(int argc, char** argv) {
   merging->addOption("second", second, "map file that comes into the coordinates of the first")
       ->required();
   merging->addOption("-o,--output", merged, "the new file")->required();
+  addMeshCommand(app);
+  addGridCommand(app);
+  addPlanCommand(app);
+  addOctomapCommand(app);
+  addCloudCommand(app);
   return runTool(app, argc, argv, [&] {
     if (*merging) {
       mergeMaps(file, second, merged);
@@ -187,8 +183,10 @@ int lookIntoMap(int argc, char** argv) {
       printInfo(file);
     } else if (*checking) {
       check(file);
-    } else {
+    } else if (*exporting) {
       exportAll(file, folder);
+    } else {
+      app.act();
     }
     return 0;
   });

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/files.hpp"
+#include "posefusion/io/mesh_file.hpp"
 #include "tool.hpp"
 
 namespace pf {
@@ -49,6 +51,12 @@ void addTopicOptions(CommandLine& app, posefusion_ros::InputOptions& reading) {
       ->group("Bags");
 }
 
+/// Throws before the run, not after it, where the mesh cannot be written.
+void requireMeshFile(const std::string& path) {
+  requireMeshName(path);
+  AtomicFile probe(path);
+}
+
 }  // namespace
 
 int runWithOptions(int argc, char** argv, const std::function<int(const RunOptions&)>& run) {
@@ -90,6 +98,8 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
   app.addFlag("--save-masks", options.save_masks, "write mask/ and people.json");
   app.addOption("--save-status", options.status_file,
                 "CSV to write: state, reason, pose and covariance of each frame");
+  app.addOption("--mesh", options.mesh_file,
+                "mesh of the map to write, *.ply, *.obj or *.glb (posefusion_map mesh has more)");
   app.addFlag("--check-depth", options.check_depth,
               "compare each frame's depth with the map rendered from its pose (slower)");
   app.addFlag("--print-config", print_config, "print all settings and stop");
@@ -102,6 +112,7 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
     if (options.input.empty()) {
       throw InputError("INPUT is missing: a TUM folder or a bag (--help tells more)");
     }
+    if (!options.mesh_file.empty()) requireMeshFile(options.mesh_file);
     return run(options);
   });
 }

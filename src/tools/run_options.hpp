@@ -26,6 +26,7 @@ struct RunOptions {
   bool localize_only = false;  ///< in it
   bool continue_map = false;   ///< write that file on
   std::string status_file;     ///< table of what became of each frame; empty: none
+  std::string mesh_file;       ///< mesh of the map to write; empty: none
   Config config;
 };
 

@@ -6,6 +6,9 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/mesh_file.hpp"
+#include "posefusion/map/stable_surfels.hpp"
+#include "posefusion/mesh/surfel_mesh.hpp"
 
 namespace pf {
 namespace {
@@ -18,6 +21,7 @@ constexpr std::int64_t kReserve_bytes = 32'000'000;
 
 RunResults::RunResults(const RunOptions& options, const Pipeline& pipeline)
     : pipeline_(pipeline),
+      mesh_file_(options.mesh_file),
       folder_(options.output, RunFolder::Name::partial),
       reserve_(folder_.file("reserve"), kReserve_bytes),
       journal_(folder_.file(kJournal), "the run is not finished"),
@@ -66,6 +70,11 @@ void RunResults::finish(RunReport& report) {
   attempt([&] { report.writeSummary(folder_.path(), savedSurfels(mapper.map())); });
   attempt([&] { map_.finish(); });
   attempt([&] { saveMap(folder_.file("map.ply"), mapper.map(), mapper.worldFromMap()); });
+  if (!mesh_file_.empty()) {
+    attempt([&] {
+      saveMesh(mesh_file_, surfelMesh(stableSurfels(mapper.map(), mapper.worldFromMap()), {}));
+    });
+  }
   attempt([&] { report.writePictures(folder_.path(), mapper.map()); });
   if (failed_.empty()) {
     folder_.finish();

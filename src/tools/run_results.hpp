@@ -38,6 +38,7 @@ class RunResults {
   std::string disturbance(const ProcessedFrame& frame);
 
   const Pipeline& pipeline_;
+  std::string mesh_file_;
   RunFolder folder_;
   DiskReserve reserve_;
   TrajectoryJournal journal_;

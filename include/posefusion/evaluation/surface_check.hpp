@@ -18,6 +18,10 @@ struct SurfaceSamples {
 /// A surfel farther from all true surface than this counts as so far.
 constexpr float kFarFromSurface_m = 0.5F;
 
+/// Distance (m) of each point, in the frame of the samples, to the nearest of the discs.
+std::vector<float> distancesToSurface(const std::vector<Eigen::Vector3f>& points,
+                                      const SurfaceSamples& truth);
+
 /// Distance (m) of each surfel's centre to the nearest of the discs. `T_truth_map` brings the map
 /// into the frame of the samples.
 std::vector<float> distancesToSurface(const SurfelArrays& surfels,

@@ -13,6 +13,9 @@ namespace pf {
 std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map = Eigen::Isometry3d::Identity());
 
+/// Writes these surfels, as they are, into the same kind of file. Throws InputError naming it.
+void saveSurfels(const std::string& path, const SurfelArrays& surfels);
+
 /// How many surfels saveMap() would write.
 std::size_t savedSurfels(const SurfelMap& map);
 
