@@ -55,7 +55,7 @@ TEST(Config, ErrorsNameTheKeyTheValueAndWhatWasExpected) {
   EXPECT_NE(assignmentError("tracking.speed=1").find("max_distance_m"), std::string::npos);
   EXPECT_EQ(assignmentError("trackin.max_distance_m=1"),
             "setting: trackin is unknown, expected one of blur, calibration, frame, graph, loop, "
-            "map, pose, "
+            "map, pose, robot, "
             "segmentation, sensor, tracking");
   EXPECT_EQ(assignmentError("tracking.max_distance_m=near"),
             "setting: tracking.max_distance_m is 'near', expected a number");

@@ -64,22 +64,6 @@ Location Mapper::State::locate(const StaticFrame& input) {
   return nowhere;
 }
 
-/// What the robot's other sensors say of a motion is held against what the images show of it,
-/// where they show all of it.
-void Mapper::State::tellRobot(const Location& location, const std::optional<MapPose>& before,
-                              std::int64_t before_ns) {
-  if (!before || location.outcome != FrameOutcome::fused || location.is_return ||
-      location.tracking.free_directions > 0) {
-    return;
-  }
-  robot.compare(before_ns, last_stamp_ns, before->T_map_camera.inverse() * location.T_map_camera,
-                location.covariance);
-  const auto felt = robot.feltBetween(before_ns, last_stamp_ns);
-  if (!felt || location.fragment != kFirstFragment) return;
-  gravity.add(location.T_map_camera.linear() * *felt,
-              1e-9 * static_cast<double>(last_stamp_ns - before_ns));
-}
-
 void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   // Colors of the map are those of its first exposure.
   const Brightness& b = location.tracking.brightness;
@@ -195,12 +179,6 @@ FrameStatus Mapper::skip(std::int64_t stamp_ns, FrameOutcome outcome) const {
   return status;
 }
 
-void Mapper::addOdometry(const StampedPose& pose) { state_->robot.addOdometry(pose); }
-
-void Mapper::addImu(const ImuSample& sample) { state_->robot.addImu(sample); }
-
-const RobotMotion& Mapper::robot() const { return state_->robot; }
-
 const SurfelMap& Mapper::map() const { return state_->map; }
 
 const Pace& Mapper::pace() const { return state_->frame.pace; }
@@ -208,18 +186,6 @@ const Pace& Mapper::pace() const { return state_->frame.pace; }
 void Mapper::place(const Eigen::Isometry3d& T_world_map) { state_->T_world_map = T_world_map; }
 
 const std::optional<Eigen::Isometry3d>& Mapper::placed() const { return state_->T_world_map; }
-
-Eigen::Isometry3d Mapper::worldFromMap() const {
-  return state_->worldFromMap().value_or(bodyFromOptical());
-}
-
-/// As it was told, or as gravity has it; nothing where neither is known.
-std::optional<Eigen::Isometry3d> Mapper::State::worldFromMap() const {
-  if (T_world_map) return T_world_map;
-  const auto up = gravity.up();
-  if (!up) return std::nullopt;
-  return levelFromMap(*up);
-}
 
 void Mapper::set(const TrackingConfig& tracking) {
   state_->config.tracking = tracking;

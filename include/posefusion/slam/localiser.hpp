@@ -140,6 +140,10 @@ class Localiser {
     bool forced = false;  ///< the frame is blurred
   };
 
+  /// Tells `location` of the motion since the frame before; the prediction that follows.
+  PosePrior expect(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
+                   const ModelView& view, const std::optional<MotionPrior>& told,
+                   Location& location);
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
   PosePrior predict(const Location& location, double elapsed_s) const;

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is known of a frame's motion before it is aligned.
+#include <algorithm>
+
+#include "posefusion/slam/localiser.hpp"
+
+namespace pf {
+namespace {
+
+constexpr double kNanosecond = 1e-9;
+// Where no corners tell of the motion, the camera may have done anything a robot does.
+constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
+constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
+constexpr double kMaxExtrapolation_s = 0.2;
+// To close a loop by, which the graph takes for what its covariance says, fewer are enough.
+constexpr int kEnoughCorners = 40;
+constexpr double kHalf = 0.5;
+
+bool hasEnoughCorners(const SparseMotion& motion) {
+  return motion.found && motion.inliers >= kEnoughCorners &&
+         motion.inliers >= kHalf * motion.matches;
+}
+
+/// Where the two contradict each other the pictures are believed: the map is made of them.
+std::optional<MotionPrior> stepOf(const SparseMotion& motion,
+                                  const std::optional<MotionPrior>& told) {
+  if (!motion.found) return told;
+  const MotionPrior seen{motion.T_before_after, motion.covariance, true};
+  return told ? combined(seen, *told).value_or(seen) : seen;
+}
+
+}  // namespace
+
+PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
+                            const SparseFlow& flow, const ModelView& view,
+                            const std::optional<MotionPrior>& told, Location& location) {
+  const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
+  location.motion = measure(frame, stamp_ns, flow, view);
+  location.is_told = told && told->has_shift;
+  location.step = stepOf(location.motion, told);
+  const PosePrior prior = predict(location, elapsed_s);
+  T_reckoned_ =
+      orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
+  recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
+  carry(location.step.value_or(MotionPrior()),
+        location.is_told || hasEnoughCorners(location.motion));
+  location.carried = carried_;
+  return prior;
+}
+
+/// By the corners that lead from the frame before.
+SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns,
+                                const SparseFlow& flow, const ModelView& view) const {
+  if (flow.to_ns != stamp_ns) return {};
+  const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
+  const bool fused_before = trusted_ns_ == previous_.stamp_ns;
+  return estimateMotion(flow,
+                        {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
+                         follows && fused_before ? &view : nullptr, &landmarks_,
+                         previous_.T_map_camera, previous_.small.still, frame.sensor},
+                        frame.full_camera);
+}
+
+PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
+  const std::optional<MotionPrior>& step = location.step;
+  MotionPrior expected;
+  if (step && step->has_shift) {
+    expected = *step;
+  } else {
+    expected.T_before_after = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
+    expected.covariance = independentCovariance(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
+                                                kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+    if (step) expected = combined(expected, *step).value_or(expected);
+  }
+  PosePrior prior;
+  prior.is_measured = expected.has_shift;
+  prior.T_map_camera = previous_.T_map_camera * expected.T_before_after;
+  const Matrix6d A = adjoint(expected.T_before_after.inverse());
+  // Against a step that is known apart from them, images of a bare wall, which say a little that
+  // nothing moves, would gain weight with every frame.
+  const Matrix6d& before = location.is_told ? previous_.covariance_to_view : previous_.covariance;
+  prior.covariance = A * before * A.transpose() + expected.covariance;
+  return prior;
+}
+
+void Localiser::carry(const MotionPrior& step, bool is_known) {
+  const Matrix6d A = adjoint(step.T_before_after.inverse());
+  carried_.T_map_camera = orthonormalised(carried_.T_map_camera * step.T_before_after);
+  carried_.covariance = A * carried_.covariance * A.transpose() + step.covariance;
+  carried_.is_measured = carried_.is_measured && is_known;
+}
+
+}  // namespace pf

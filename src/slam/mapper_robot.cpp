@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the robot's other sensors tell.
+#include "mapper_state.hpp"
+
+namespace pf {
+
+/// What the robot's other sensors say of a motion is held against what the images show of it,
+/// where they show all of it.
+void Mapper::State::tellRobot(const Location& location, const std::optional<MapPose>& before,
+                              std::int64_t before_ns) {
+  if (!before || location.outcome != FrameOutcome::fused || location.is_return ||
+      location.tracking.free_directions > 0) {
+    return;
+  }
+  robot.compare(before_ns, last_stamp_ns, before->T_map_camera.inverse() * location.T_map_camera,
+                location.covariance);
+  const auto felt = robot.feltBetween(before_ns, last_stamp_ns);
+  if (!felt || location.fragment != kFirstFragment) return;
+  gravity.add(location.T_map_camera.linear() * *felt,
+              1e-9 * static_cast<double>(last_stamp_ns - before_ns));
+}
+
+void Mapper::addOdometry(const StampedPose& pose) { state_->robot.addOdometry(pose); }
+
+void Mapper::addImu(const ImuSample& sample) { state_->robot.addImu(sample); }
+
+const RobotMotion& Mapper::robot() const { return state_->robot; }
+
+Eigen::Isometry3d Mapper::worldFromMap() const {
+  return state_->worldFromMap().value_or(bodyFromOptical());
+}
+
+/// As it was told, or as gravity has it; nothing where neither is known.
+std::optional<Eigen::Isometry3d> Mapper::State::worldFromMap() const {
+  if (T_world_map) return T_world_map;
+  const auto up = gravity.up();
+  if (!up) return std::nullopt;
+  return levelFromMap(*up);
+}
+
+}  // namespace pf
