@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/map/stable_surfels.hpp"
 #include "posefusion/run/run.hpp"
 
 namespace pf {
@@ -73,19 +73,8 @@ Trajectory Slam::trajectory() const {
 }
 
 SurfelArrays Slam::surfels() const {
-  const SurfelMap& map = state_->pipeline.mapper().map();
-  SurfelArrays stable;
-  map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& s, std::size_t i) {
-    const auto index = static_cast<std::uint32_t>(i);
-    if (map.isStable(s, i)) stable.append(s, &index, 1);
-  });
-  const RigidMotion motion(state_->pipeline.mapper().worldFromMap());
-  const SurfelArrays old = stable;
-  for (std::size_t i = 0; i < old.size(); ++i) {
-    motion.point(old.x[i], old.y[i], old.z[i], stable.x[i], stable.y[i], stable.z[i]);
-    motion.direction(old.nx[i], old.ny[i], old.nz[i], stable.nx[i], stable.ny[i], stable.nz[i]);
-  }
-  return stable;
+  const Mapper& mapper = state_->pipeline.mapper();
+  return stableSurfels(mapper.map(), mapper.worldFromMap());
 }
 
 void Slam::saveTrajectory(const std::string& path) const {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posefusion/core/trajectory.hpp"
+
 namespace pf::simulator {
 namespace {
 
@@ -69,7 +71,7 @@ Isometry3d baseFromCamera(const LegsConfig& config, const NeckAngles& neck) {
   T.translate(Vector3d(0.0, 0.0, config.neck_m));
   T.rotate(about(neck.yaw_rad, Vector3d::UnitZ()) * about(neck.pitch_rad, Vector3d::UnitY()));
   T.translate(Vector3d(config.eye_m, 0.0, 0.0));
-  T.rotate(bodyFromOptical());
+  T.rotate(bodyFromOptical().linear());
   return T;
 }
 
@@ -102,7 +104,7 @@ double Body::facingAt(double time_s) const {
 BodyPose Body::at(double time_s) const {
   const Isometry3d T_world_camera = path_.at(time_s);
   const Matrix3d head = about(-facingAt(time_s), Vector3d::UnitZ()) * T_world_camera.linear() *
-                        bodyFromOptical().transpose();
+                        bodyFromOptical().linear().transpose();
   BodyPose pose;
   pose.neck.yaw_rad = std::clamp(headingOf(head), -kMostYaw_rad, kMostYaw_rad);
   pose.neck.pitch_rad =

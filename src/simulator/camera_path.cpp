@@ -72,10 +72,6 @@ std::size_t momentCount(const TimeSpan& span, double rate_hz) {
   return static_cast<std::size_t>(std::floor((span.end_s - span.start_s) * rate_hz + 1e-6)) + 1;
 }
 
-Eigen::Matrix3d bodyFromOptical() {
-  return (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
-}
-
 Isometry3d lookAt(const Vector3d& eye, const Vector3d& target) {
   const Vector3d forward = (target - eye).normalized();
   const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();

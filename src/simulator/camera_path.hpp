@@ -34,9 +34,6 @@ struct TimeSpan {
 /// How many moments of this rate are in a span, both ends included.
 std::size_t momentCount(const TimeSpan& span, double rate_hz);
 
-/// Takes the optical frame (z forward, y down) of a level camera to a body's (x ahead, z up).
-Eigen::Matrix3d bodyFromOptical();
-
 /// Camera at `eye` that looks at `target`, upright (optical frame: z forward, y down).
 Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
 

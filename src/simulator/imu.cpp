@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/trajectory.hpp"
 #include "simulator/random.hpp"
 
 namespace pf::simulator {
@@ -77,7 +78,7 @@ Isometry3d imuFromCamera(const ImuConfig& config) {
   T.rotate(Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
            Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
            Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()));
-  T.rotate(bodyFromOptical());
+  T.rotate(bodyFromOptical().linear());
   return T;
 }
 
