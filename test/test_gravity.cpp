@@ -33,12 +33,12 @@ TEST(GravityEstimate, WhatIsNotGravityTellsNothing) {
   EXPECT_FALSE(silent.up());
 }
 
-TEST(LevelFromMap, TurnsUpUpAndKeepsTheHeading) {
-  EXPECT_TRUE(levelFromMap({0, -1, 0}).isApprox(bodyFromOptical(), 1e-12)) << "a level camera";
+TEST(LevelFromOptical, TurnsUpUpAndKeepsTheHeading) {
+  EXPECT_TRUE(levelFromOptical({0, -1, 0}).isApprox(bodyFromOptical(), 1e-12)) << "a level camera";
   for (const Eigen::Vector3d& tilt : {Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0.2, 0, -0.4),
                                       Eigen::Vector3d(-M_PI / 2, 0, 0)}) {
     const Eigen::Vector3d up = expSo3(tilt) * Eigen::Vector3d(0, -1, 0);
-    const Eigen::Isometry3d T = levelFromMap(up);
+    const Eigen::Isometry3d T = levelFromOptical(up);
     EXPECT_TRUE(isRigid(T));
     EXPECT_TRUE((T.linear() * up).isApprox(Eigen::Vector3d::UnitZ(), 1e-9));
     const Eigen::Vector3d ahead = T.linear() * Eigen::Vector3d::UnitZ();

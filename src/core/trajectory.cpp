@@ -14,6 +14,19 @@ constexpr std::int64_t kMaxDifference_ns = 20'000'000;
 
 }  // namespace
 
+Eigen::Isometry3d levelFromOptical(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d z = up.normalized();
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - z.z() * z;
+  // Looking straight up or down: the top of the picture is ahead.
+  if (ahead.norm() < 0.1) ahead = -Eigen::Vector3d::UnitY() + z.y() * z;
+  const Eigen::Vector3d x = ahead.normalized();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear().row(0) = x;
+  T.linear().row(1) = z.cross(x);
+  T.linear().row(2) = z;
+  return T;
+}
+
 Eigen::Isometry3d poseBetween(const StampedPose& a, const StampedPose& b, std::int64_t stamp_ns) {
   const double part = static_cast<double>(stamp_ns - a.stamp_ns) /
                       static_cast<double>(std::max<std::int64_t>(1, b.stamp_ns - a.stamp_ns));

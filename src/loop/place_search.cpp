@@ -8,6 +8,7 @@
 #include "panorama.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/trajectory.hpp"
 
 namespace pf {
 namespace {
@@ -18,21 +19,6 @@ constexpr double kCornerRange = 1.2;
 constexpr double kSameTilt_rad = 0.03;
 constexpr double kSameHeight_m = 0.05;
 constexpr double kApart_m = 0.2, kApart_rad = 0.17;
-
-/// Rotation of the camera in a frame whose z axis is up, looking along x: from the direction
-/// against gravity in the camera frame. Columns are the camera's axes.
-Eigen::Matrix3d tiltOf(const Eigen::Vector3d& up) {
-  const Eigen::Vector3d z = up.normalized();
-  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - z.z() * z;
-  // Looking straight up or down: the top of the picture is ahead.
-  if (ahead.norm() < 0.1) ahead = -Eigen::Vector3d::UnitY() + z.y() * z;
-  const Eigen::Vector3d x = ahead.normalized();
-  Eigen::Matrix3d rows;
-  rows.row(0) = x;
-  rows.row(1) = z.cross(x);
-  rows.row(2) = z;
-  return rows;
-}
 
 /// The points around `around`, in the frame of the grid.
 MapPoints cut(const MapPoints& points, const Eigen::Isometry3d& T_grid_map, double reach_m) {
@@ -104,7 +90,7 @@ struct Grid {
 void addTilts(const PlaceQuery& query, const std::vector<Eigen::Vector3d>& ups, Grid& grid) {
   int lowest = 1 << 20, highest = -lowest;
   for (const Eigen::Vector3d& up : ups) {
-    const Eigen::Matrix3d R = tiltOf(up);
+    const Eigen::Matrix3d R = levelFromOptical(up).linear();
     grid.tilts.push_back({R, raysOf(query, R, grid.shape, grid.step_m)});
     for (const int row : grid.tilts.back().rays.row) {
       lowest = std::min(lowest, row);
@@ -153,7 +139,7 @@ Grid makeGrid(const PlaceQuery& query, const MapPose& around, const Eigen::Vecto
   for (const SeenFloor& floor : query.beside) ups.push_back(floor.up);
   grid.fragment = around.fragment;
   grid.T_map_grid = T_map_around;
-  grid.T_map_grid.linear() = T_map_around.linear() * tiltOf(up_before).transpose();
+  grid.T_map_grid.linear() = T_map_around.linear() * levelFromOptical(up_before).linear().transpose();
   grid.shape.headings = config.headings;
   grid.shape.phases =
       std::max(1, static_cast<int>(std::lround(2.0 * M_PI / (config.headings * kBin_rad))));

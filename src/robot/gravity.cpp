@@ -23,16 +23,4 @@ std::optional<Eigen::Vector3d> GravityEstimate::up() const {
   return mean.normalized();
 }
 
-Eigen::Isometry3d levelFromMap(const Eigen::Vector3d& up_in_map) {
-  const Eigen::Vector3d z = up_in_map.normalized();
-  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - z.z() * z;
-  // Looking straight up or down: the top of the picture is ahead.
-  if (ahead.norm() < 0.1) ahead = -Eigen::Vector3d::UnitY() + z.y() * z;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear().row(0) = ahead.normalized();
-  T.linear().row(2) = z;
-  T.linear().row(1) = z.cross(ahead.normalized());
-  return T;
-}
-
 }  // namespace pf

@@ -35,7 +35,7 @@ std::optional<Eigen::Isometry3d> Mapper::State::worldFromMap() const {
   if (T_world_map) return T_world_map;
   const auto up = gravity.up();
   if (!up) return std::nullopt;
-  return levelFromMap(*up);
+  return levelFromOptical(*up);
 }
 
 }  // namespace pf

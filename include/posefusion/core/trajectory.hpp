@@ -33,6 +33,11 @@ inline Eigen::Isometry3d bodyFromOptical() {
   return T;
 }
 
+/// The same for a camera that is not level: to a frame of the same origin whose z axis is up, and
+/// whose x axis is where the camera looks, level. `up`: direction against gravity in the optical
+/// frame.
+Eigen::Isometry3d levelFromOptical(const Eigen::Vector3d& up);
+
 /// The same poses in another world.
 inline Trajectory inWorld(const Eigen::Isometry3d& T_new_old, Trajectory trajectory) {
   for (StampedPose& pose : trajectory) pose.T_world_camera = T_new_old * pose.T_world_camera;

@@ -21,8 +21,4 @@ class GravityEstimate {
   double elapsed_s_ = 0;
 };
 
-/// From the map frame, that of the first camera (z forward, x right, y down), to one of the same
-/// origin whose z axis is up, and whose x axis is the way that the first camera looked, level.
-Eigen::Isometry3d levelFromMap(const Eigen::Vector3d& up_in_map);
-
 }  // namespace pf
