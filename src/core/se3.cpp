@@ -101,6 +101,12 @@ Matrix6d independentCovariance(double sigma_m, double sigma_rad) {
   return variance.asDiagonal();
 }
 
+std::optional<Eigen::Matrix3d> rotationOf(const Eigen::Quaterniond& q) {
+  constexpr double kMostOff = 0.05;
+  if (!(std::abs(q.norm() - 1.0) <= kMostOff)) return std::nullopt;
+  return q.normalized().toRotationMatrix();
+}
+
 bool isRigid(const Eigen::Isometry3d& T) {
   constexpr double kTolerance = 1e-6;
   const Eigen::Matrix3d R = T.linear();

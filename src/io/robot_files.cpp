@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -30,11 +29,9 @@ Eigen::Matrix3d mountOf(const std::string& imu_file) {
   YamlMap file(parseYaml(readFile(path), path), path + ": ");
   YamlMap mount = file.map("T_imu_camera");
   const std::vector<double> q = mount.numbers("quaternion", 4);
-  const Eigen::Quaterniond R(q[3], q[0], q[1], q[2]);
-  if (!(std::abs(R.norm() - 1.0) < 0.05)) {
-    mount.fail("quaternion", "is not of unit length, expected x, y, z, w");
-  }
-  return R.normalized().toRotationMatrix().transpose();
+  const auto R_imu_camera = rotationOf({q[3], q[0], q[1], q[2]});
+  if (!R_imu_camera) mount.fail("quaternion", "is not of unit length, expected x, y, z, w");
+  return R_imu_camera->transpose();
 }
 
 ImuSample sampleOf(std::string line, const Eigen::Matrix3d& R_camera_imu) {

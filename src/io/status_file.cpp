@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 
@@ -80,8 +81,9 @@ StatusRow parseRow(const std::string& line) {
   const auto number = [&](std::size_t column) { return numberOf(cells[column]); };
   row.T_map_camera.translation() = Eigen::Vector3d(number(6), number(7), number(8));
   const Eigen::Quaterniond q(number(12), number(9), number(10), number(11));
-  if (std::abs(q.norm() - 1.0) > 0.05) throw InputError("the quaternion is not of unit length");
-  row.T_map_camera.linear() = q.normalized().toRotationMatrix();
+  const auto rotation = rotationOf(q);
+  if (!rotation) throw InputError("the quaternion is not of unit length");
+  row.T_map_camera.linear() = *rotation;
   std::size_t column = kColumns - 21;
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j) row.covariance(i, j) = row.covariance(j, i) = number(column++);

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 
@@ -44,9 +45,9 @@ StampedPose parseLine(std::string line) {
   StampedPose pose;
   pose.stamp_ns = parseStamp(stamp);
   const auto v = parsePose(fields);
-  Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-  if (std::abs(q.norm() - 1.0) > 0.05) throw InputError("the quaternion is not of unit length");
-  pose.T_world_camera.linear() = q.normalized().toRotationMatrix();
+  const auto rotation = rotationOf({v[6], v[3], v[4], v[5]});
+  if (!rotation) throw InputError("the quaternion is not of unit length");
+  pose.T_world_camera.linear() = *rotation;
   pose.T_world_camera.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
   return pose;
 }

@@ -16,10 +16,6 @@ constexpr double kBiasMemory_s = 20.0, kMostBias_rad_s = 0.2;
 // Nothing is told of the shift: wider than what any robot does between two frames.
 constexpr double kAnyShift_m = 10.0;
 
-double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
-}
-
 }  // namespace
 
 std::string ImuTrack::add(const ImuSample& sample) {

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kKept_s = 10.0, kMostCarriedOn_s = 0.05;
 
-double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
-}
-
 }  // namespace
 
 std::string OdometryTrack::add(const StampedPose& pose) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/robot/robot_motion.hpp"
 
+#include <utility>
+
+#include "posefusion/core/stamps.hpp"
+
 namespace pf {
 namespace {
 
@@ -40,7 +44,7 @@ std::optional<MotionPrior> RobotMotion::between(std::int64_t from_ns, std::int64
 
 void RobotMotion::compare(std::int64_t from_ns, std::int64_t to_ns, const Eigen::Isometry3d& T_seen,
                           const Matrix6d& covariance) {
-  const double elapsed_s = 1e-9 * static_cast<double>(to_ns - from_ns);
+  const double elapsed_s = secondsBetween(from_ns, to_ns);
   const auto by_odometry = odometry_.between(from_ns, to_ns);
   if (by_odometry && !imu_.isFalling(to_ns)) {
     odometry_trust_.compare(*by_odometry, T_seen, covariance, elapsed_s);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/robot_input.hpp"
 
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -68,15 +67,11 @@ pf::StampedPose toOdometryPose(const nav_msgs::Odometry& message,
                                const Eigen::Isometry3d& T_child_camera) {
   const auto& p = message.pose.pose.position;
   const auto& o = message.pose.pose.orientation;
-  const Eigen::Quaterniond q(o.w, o.x, o.y, o.z);
-  constexpr double kMostOff = 0.05;
+  const auto rotation = pf::rotationOf({o.w, o.x, o.y, o.z});
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Eigen::Isometry3d T_odom_child = Eigen::Isometry3d::Identity();
   T_odom_child.translation() = Eigen::Vector3d(p.x, p.y, p.z);
-  if (std::abs(q.norm() - 1.0) < kMostOff) {
-    T_odom_child.linear() = q.normalized().toRotationMatrix();
-  } else {
-    T_odom_child.linear().setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
+  T_odom_child.linear() = rotation.value_or(Eigen::Matrix3d::Constant(kNone));
   return {toNs(message.header.stamp), T_odom_child * T_child_camera};
 }
 

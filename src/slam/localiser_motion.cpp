@@ -2,12 +2,12 @@
 // What is known of a frame's motion before it is aligned.
 #include <algorithm>
 
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/slam/localiser.hpp"
 
 namespace pf {
 namespace {
 
-constexpr double kNanosecond = 1e-9;
 // Where no corners tell of the motion, the camera may have done anything a robot does.
 constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
@@ -34,7 +34,7 @@ std::optional<MotionPrior> stepOf(const SparseMotion& motion,
 PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
                             const SparseFlow& flow, const ModelView& view,
                             const std::optional<MotionPrior>& told, Location& location) {
-  const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
+  const double elapsed_s = secondsBetween(previous_.stamp_ns, stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
   location.is_told = told && told->has_shift;
   location.step = stepOf(location.motion, told);

@@ -3,6 +3,7 @@
 
 #include "mapper_state.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/stamps.hpp"
 
 namespace pf {
 namespace {
@@ -31,8 +32,7 @@ std::optional<MapPose> Mapper::State::trackedPose() const {
 /// `before`: trackedPose() before the frame.
 void Mapper::State::reckon(const Location& location, const std::optional<MapPose>& before,
                            std::int64_t before_ns) {
-  const double elapsed_s =
-      before_ns == kBeforeAll ? 0 : 1e-9 * static_cast<double>(last_stamp_ns - before_ns);
+  const double elapsed_s = before_ns == kBeforeAll ? 0 : secondsBetween(before_ns, last_stamp_ns);
   if (location.located && isPlaceKnown()) {
     reckoning.know(location.T_map_camera, location.tracking.covariance);
   } else if (location.located && before && before->fragment == location.fragment) {
@@ -53,7 +53,7 @@ void Mapper::State::countLostTime(const Location& location, std::int64_t before_
     if (!isPlaceKnown()) map_at_loss.reset();  // the fragment belongs into it
   }
   if (before_ns != kBeforeAll && isViewOpen()) {
-    *lost_s += std::min(1e-9 * static_cast<double>(last_stamp_ns - before_ns), kMostElapsed_s);
+    *lost_s += std::min(secondsBetween(before_ns, last_stamp_ns), kMostElapsed_s);
   }
 }
 

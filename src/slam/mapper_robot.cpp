@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the robot's other sensors tell.
 #include "mapper_state.hpp"
+#include "posefusion/core/stamps.hpp"
 
 namespace pf {
 
@@ -16,8 +17,7 @@ void Mapper::State::tellRobot(const Location& location, const std::optional<MapP
                 location.covariance);
   const auto felt = robot.feltBetween(before_ns, last_stamp_ns);
   if (!felt || location.fragment != kFirstFragment) return;
-  gravity.add(location.T_map_camera.linear() * *felt,
-              1e-9 * static_cast<double>(last_stamp_ns - before_ns));
+  gravity.add(location.T_map_camera.linear() * *felt, secondsBetween(before_ns, last_stamp_ns));
 }
 
 void Mapper::addOdometry(const StampedPose& pose) { state_->robot.addOdometry(pose); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 
 namespace pf {
 
@@ -42,6 +43,9 @@ Matrix6d independentCovariance(double sigma_m, double sigma_rad);
 
 /// Whether all of it is finite and its rotation is one, as far as rounding goes.
 bool isRigid(const Eigen::Isometry3d& T);
+
+/// The rotation of a quaternion. Nothing where it is not of unit length, to 5 %, or not finite.
+std::optional<Eigen::Matrix3d> rotationOf(const Eigen::Quaterniond& q);
 
 /// The nearest rigid motion: the rotation re-orthonormalised (many products lose it slowly).
 Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);

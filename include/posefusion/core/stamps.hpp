@@ -15,6 +15,10 @@ std::int64_t parseStamp(const std::string& seconds);
 /// Nanoseconds as decimal seconds with six decimals, nine where six would lose something.
 std::string formatStamp(std::int64_t stamp_ns);
 
+inline double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) {
+  return 1e-9 * static_cast<double>(to_ns - from_ns);
+}
+
 /// Pairs two lists of stamps as the TUM benchmark does: of all pairs less than `max_difference_ns`
 /// apart the closest is taken first, and each stamp is used once. Indices into `first` and
 /// `second`, ordered by `first`. The lists need no order.
