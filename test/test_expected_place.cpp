@@ -22,15 +22,15 @@ Eigen::Isometry3d poseOf(const PoseGraph& graph, int keyframe) {
   return graph.keyframes()[static_cast<std::size_t>(keyframe)].T_map_camera;
 }
 
-TEST(StepsFrom, GoTheShortestWay) {
+TEST(Ways, TheShortestIsGone) {
   const Poses truth = corridor();
   PoseGraph graph = graphOf(truth);
-  const auto steps = stepsFrom(59, 60, graph.constraints());
+  const auto steps = Ways(60, graph.constraints()).stepsFrom(59);
   for (int i = 0; i < 60; ++i) EXPECT_EQ(steps[static_cast<std::size_t>(i)], 59 - i);
   graph.addLoop(loopOf(truth, 2, 57));
   graph.optimise();
-  EXPECT_EQ(stepsFrom(59, 60, graph.constraints())[0], 5);
-  EXPECT_EQ(stepsFrom(0, 3, {})[2], 3) << "no way leads there";
+  EXPECT_EQ(Ways(60, graph.constraints()).stepsFrom(59)[0], 5);
+  EXPECT_EQ(Ways(3, {}).stepsFrom(0)[2], 3) << "no way leads there";
 }
 
 TEST(DriftCovariance, GrowsWithStepsAndTurnsReachFar) {

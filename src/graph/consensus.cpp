@@ -28,9 +28,12 @@ class Consistency {
         loops_(loops),
         floor_(independentCovariance(config.loop_sigma_m, config.loop_sigma_rad)),
         agree_(loops.size(), std::vector<char>(loops.size(), 0)) {
+    const Ways ways(keyframes.size(), constraints);
     for (const PoseConstraint& loop : loops) {
-      for (const int end : {loop.from, loop.to})
-        steps_.try_emplace(end, stepsFrom(end, keyframes.size(), constraints));
+      for (const int end : {loop.from, loop.to}) {
+        const auto [found, is_new] = steps_.try_emplace(end);
+        if (is_new) found->second = ways.stepsFrom(end);
+      }
     }
     parallelFor(loops.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

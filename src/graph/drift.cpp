@@ -5,19 +5,21 @@
 
 namespace pf {
 
-std::vector<int> stepsFrom(int keyframe, std::size_t keyframes,
-                           const std::vector<PoseConstraint>& constraints) {
-  std::vector<std::vector<int>> next(keyframes);
+Ways::Ways(std::size_t keyframes, const std::vector<PoseConstraint>& constraints)
+    : next_(keyframes) {
   for (const PoseConstraint& c : constraints) {
-    next[static_cast<std::size_t>(c.from)].push_back(c.to);
-    next[static_cast<std::size_t>(c.to)].push_back(c.from);
+    next_[static_cast<std::size_t>(c.from)].push_back(c.to);
+    next_[static_cast<std::size_t>(c.to)].push_back(c.from);
   }
-  std::vector<int> steps(keyframes, static_cast<int>(keyframes));
+}
+
+std::vector<int> Ways::stepsFrom(int keyframe) const {
+  std::vector<int> steps(next_.size(), static_cast<int>(next_.size()));
   steps[static_cast<std::size_t>(keyframe)] = 0;
   std::vector<int> order = {keyframe};
   for (std::size_t i = 0; i < order.size(); ++i) {
     const int so_far = steps[static_cast<std::size_t>(order[i])];
-    for (const int other : next[static_cast<std::size_t>(order[i])]) {
+    for (const int other : next_[static_cast<std::size_t>(order[i])]) {
       int& there = steps[static_cast<std::size_t>(other)];
       if (there <= so_far + 1) continue;
       there = so_far + 1;

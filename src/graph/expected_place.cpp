@@ -2,7 +2,7 @@
 #include "posefusion/graph/expected_place.hpp"
 
 #include <Eigen/Cholesky>
-#include <limits>
+#include <algorithm>
 
 #include "posefusion/graph/drift.hpp"
 
@@ -13,41 +13,33 @@ namespace {
 // alignment that believed the wrong things.
 constexpr double kAtLoss_m = 0.15, kAtLoss_rad = 0.06;
 
-/// The keyframe in use of the fragment that was nearest to the pose; -1: it has none.
-int nearestTo(const MapPose& pose, const std::vector<Keyframe>& keyframes) {
-  int nearest = -1;
-  double least = std::numeric_limits<double>::max();
-  for (const Keyframe& k : keyframes) {
-    if (k.fragment != pose.fragment || k.isRetired()) continue;
-    const double far =
-        (k.T_map_camera.translation() - pose.T_map_camera.translation()).squaredNorm();
-    if (far >= least) continue;
-    least = far;
-    nearest = k.id;
-  }
-  return nearest;
-}
-
 }  // namespace
 
 ExpectedPlace::ExpectedPlace(const PoseGraph& graph, const PoseConstraint& reckoned)
     : config_(graph.config()),
-      keyframes_(graph.keyframes()),
       covariance_(reckoned.covariance + independentCovariance(kAtLoss_m, kAtLoss_rad)) {
-  const Keyframe& from = keyframes_.at(static_cast<std::size_t>(reckoned.from));
+  const std::vector<Keyframe>& keyframes = graph.keyframes();
+  const Keyframe& from = keyframes.at(static_cast<std::size_t>(reckoned.from));
   expected_ = {from.fragment, from.T_map_camera * reckoned.T_from_to};
-  steps_ = stepsFrom(from.id, keyframes_.size(), graph.constraints());
+  const std::vector<int> steps = Ways(keyframes.size(), graph.constraints()).stepsFrom(from.id);
+  for (const Keyframe& k : keyframes) {
+    if (k.fragment != from.fragment || k.isRetired()) continue;
+    around_.push_back({k.T_map_camera.translation(), steps[static_cast<std::size_t>(k.id)]});
+  }
 }
 
 double ExpectedPlace::chiSquare(const MapPose& found) const {
-  if (found.fragment != expected_.fragment) return 0;
-  const Eigen::Isometry3d& T_expected = expected_.T_map_camera;
-  const int near = nearestTo(found, keyframes_);
-  if (near < 0) return 0;
-  const double reach_m = (found.T_map_camera.translation() - T_expected.translation()).norm();
-  const Matrix6d covariance =
-      covariance_ + driftCovariance(config_, steps_[static_cast<std::size_t>(near)], reach_m);
-  const Vector6d error = logSe3(T_expected.inverse() * found.T_map_camera);
+  if (found.fragment != expected_.fragment || around_.empty()) return 0;
+  const Eigen::Isometry3d &T_found = found.T_map_camera, &T_expected = expected_.T_map_camera;
+  const auto far = [&](const Around& a) {
+    return (a.position_m - T_found.translation()).squaredNorm();
+  };
+  const Around& near =
+      *std::min_element(around_.begin(), around_.end(),
+                        [&](const Around& a, const Around& b) { return far(a) < far(b); });
+  const double reach_m = (T_found.translation() - T_expected.translation()).norm();
+  const Matrix6d covariance = covariance_ + driftCovariance(config_, near.steps, reach_m);
+  const Vector6d error = logSe3(T_expected.inverse() * T_found);
   return error.dot(covariance.llt().solve(error));
 }
 

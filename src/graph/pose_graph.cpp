@@ -26,9 +26,9 @@ PoseGraph::PoseGraph(const GraphConfig& config, std::vector<Keyframe> keyframes,
       constraints_(std::move(constraints)),
       version_(version) {
   checkGraph(keyframes_, constraints_, version_);
-  const auto isReckoned = [](const auto& c) { return c.kind == ConstraintKind::reckoned; };
-  const auto first = std::stable_partition(constraints_.begin(), constraints_.end(),
-                                           [&](const auto& c) { return !isReckoned(c); });
+  const auto first =
+      std::stable_partition(constraints_.begin(), constraints_.end(),
+                            [](const auto& c) { return c.kind != ConstraintKind::reckoned; });
   reckoned_.assign(first, constraints_.end());
   constraints_.erase(first, constraints_.end());
 }

@@ -41,7 +41,7 @@ std::string PoseGraph::unexpected(const PoseConstraint& loop,
   if (!reckoned) return {};
   const auto pose = [&](int i) { return joined[static_cast<std::size_t>(i)].T_map_camera; };
   const int end = fragmentOf(loop.to) == moves ? loop.to : loop.from;
-  const std::vector<int> steps = stepsFrom(reckoned->to, keyframes_.size(), constraints_);
+  const std::vector<int> steps = Ways(keyframes_.size(), constraints_).stepsFrom(reckoned->to);
   reckoned->covariance +=
       driftCovariance(config_, steps[static_cast<std::size_t>(end)],
                       (pose(end).translation() - pose(reckoned->to).translation()).norm());

@@ -9,10 +9,18 @@
 
 namespace pf {
 
-/// How many steps lie between a keyframe and each of all keyframes, by the shortest way along the
-/// constraints; the number of keyframes where no way leads. Linear in the size of the graph.
-std::vector<int> stepsFrom(int keyframe, std::size_t keyframes,
-                           const std::vector<PoseConstraint>& constraints);
+/// The ways between keyframes along constraints.
+class Ways {
+ public:
+  Ways(std::size_t keyframes, const std::vector<PoseConstraint>& constraints);
+
+  /// How many steps lie between a keyframe and each of all, by the shortest way; the number of
+  /// keyframes where no way leads. Linear in the size of the graph.
+  std::vector<int> stepsFrom(int keyframe) const;
+
+ private:
+  std::vector<std::vector<int>> next_;
+};
 
 /// What a pose may be off by, seen from another `reach_m` away, after so many steps of tracking
 /// that each are off by odometry_sigma_m and odometry_sigma_rad: a turn anywhere on the way moves

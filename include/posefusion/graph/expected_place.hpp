@@ -32,9 +32,14 @@ class ExpectedPlace {
   static constexpr double kMostChiSquare = 12.59;  ///< 95 % of 6 degrees of freedom
 
  private:
+  /// A keyframe of the fragment.
+  struct Around {
+    Eigen::Vector3d position_m;
+    int steps = 0;  ///< from the keyframe of the beginning
+  };
+
   GraphConfig config_;
-  std::vector<Keyframe> keyframes_;
-  std::vector<int> steps_;  ///< from the keyframe of the beginning to each
+  std::vector<Around> around_;  ///< those in use
   MapPose expected_;
   Matrix6d covariance_;
 };
