@@ -63,6 +63,15 @@ std::optional<Eigen::Vector3d> ImuTrack::rateAt(std::int64_t stamp_ns) const {
   return Eigen::Vector3d(a.rate_rad_s + part * (after->rate_rad_s - a.rate_rad_s));
 }
 
+std::pair<ImuTrack::Place, ImuTrack::Place> ImuTrack::within(std::int64_t from_ns,
+                                                             std::int64_t to_ns) const {
+  const auto after = [this](std::int64_t stamp_ns) {
+    return std::upper_bound(samples_.begin(), samples_.end(), stamp_ns,
+                            [](std::int64_t t, const auto& s) { return t < s.stamp_ns; });
+  };
+  return {after(from_ns), after(to_ns)};
+}
+
 std::optional<Eigen::Matrix3d> ImuTrack::turnBetween(std::int64_t from_ns, std::int64_t to_ns,
                                                      const Eigen::Vector3d& bias_rad_s) const {
   const auto first = rateAt(from_ns), last = rateAt(to_ns);
@@ -77,9 +86,8 @@ std::optional<Eigen::Matrix3d> ImuTrack::turnBetween(std::int64_t from_ns, std::
     rate = next;
     return step_s <= config_.imu_max_gap_s && next.norm() < config_.gyro_full_scale_rad_s;
   };
-  for (const ImuSample& sample : samples_) {
-    if (sample.stamp_ns <= from_ns || sample.stamp_ns >= to_ns) continue;
-    if (!advance(sample.stamp_ns, sample.rate_rad_s)) return std::nullopt;
+  for (auto [sample, end] = within(from_ns, to_ns - 1); sample != end; ++sample) {
+    if (!advance(sample->stamp_ns, sample->rate_rad_s)) return std::nullopt;
   }
   if (!advance(to_ns, *last)) return std::nullopt;
   return R;
@@ -100,15 +108,11 @@ std::optional<MotionPrior> ImuTrack::between(std::int64_t from_ns, std::int64_t 
 std::optional<Eigen::Vector3d> ImuTrack::feltBetween(std::int64_t from_ns,
                                                      std::int64_t to_ns) const {
   if (isFalling(to_ns)) return std::nullopt;
+  const auto [first, last] = within(from_ns, to_ns);
+  if (last <= first) return std::nullopt;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (const ImuSample& sample : samples_) {
-    if (sample.stamp_ns <= from_ns || sample.stamp_ns > to_ns) continue;
-    sum += sample.acceleration_m_s2;
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return Eigen::Vector3d(sum / count);
+  for (auto sample = first; sample != last; ++sample) sum += sample->acceleration_m_s2;
+  return Eigen::Vector3d(sum / static_cast<double>(last - first));
 }
 
 void ImuTrack::learnBias(std::int64_t from_ns, std::int64_t to_ns,

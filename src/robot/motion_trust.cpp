@@ -14,8 +14,6 @@ constexpr double kBelieved = 10.0, kMost = 25.0;
 // Frames in a row have errors in common: one says less for a source than its own likelihood, and
 // may say a lot against it.
 constexpr double kMostFor = 1.0, kMostAgainst = 10.0;
-// A robot that walks and turns does so: see Reckoning.
-constexpr double kSpeed_m_s = 0.6, kTurn_rad_s = 1.2;
 constexpr double kMemory = 100;        // frames
 constexpr double kMostSquare = 22.46;  // of one frame: a contradiction is no noise
 
@@ -47,10 +45,10 @@ void MotionTrust::compare(const MotionPrior& told, const Eigen::Isometry3d& T_se
   const Vector6d moved = logSe3(T_seen);
   has_shift_ = told.has_shift;
   turn_.compare(error.tail<3>(), moved.tail<3>(), told.covariance.bottomRightCorner<3, 3>(),
-                covariance.bottomRightCorner<3, 3>(), kTurn_rad_s * elapsed_s);
+                covariance.bottomRightCorner<3, 3>(), kRobotTurn_rad_s * elapsed_s);
   if (!has_shift_) return;
   shift_.compare(error.head<3>(), moved.head<3>(), told.covariance.topLeftCorner<3, 3>(),
-                 covariance.topLeftCorner<3, 3>(), kSpeed_m_s * elapsed_s);
+                 covariance.topLeftCorner<3, 3>(), kRobotSpeed_m_s * elapsed_s);
 }
 
 bool MotionTrust::isBelieved() const {

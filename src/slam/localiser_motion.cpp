@@ -8,8 +8,7 @@
 namespace pf {
 namespace {
 
-// Where no corners tell of the motion, the camera may have done anything a robot does.
-constexpr double kFreeSpeed_m_s = 0.6, kFreeTurn_rad_s = 1.2;
+// Added to what a robot may do, where nothing measures the motion.
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
 constexpr double kMaxExtrapolation_s = 0.2;
 // To close a loop by, which the graph takes for what its covariance says, fewer are enough.
@@ -68,8 +67,8 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
     expected = *step;
   } else {
     expected.T_before_after = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
-    expected.covariance = independentCovariance(kFreeShift_m + kFreeSpeed_m_s * elapsed_s,
-                                                kFreeAngle_rad + kFreeTurn_rad_s * elapsed_s);
+    expected.covariance = independentCovariance(kFreeShift_m + kRobotSpeed_m_s * elapsed_s,
+                                                kFreeAngle_rad + kRobotTurn_rad_s * elapsed_s);
     if (step) expected = combined(expected, *step).value_or(expected);
   }
   PosePrior prior;

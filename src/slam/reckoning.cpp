@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
+#include "posefusion/robot/motion_prior.hpp"
+
 namespace pf {
 namespace {
 
-// A robot that walks (1 m/s) and turns (1 rad/s) does so with these root mean squares, and for so
-// long into the same direction.
-constexpr double kSpeed_m_s = 0.6, kTurn_rad_s = 1.2;
 // Beyond it the camera may look anywhere.
 constexpr double kAnyAngle_rad = 1.8;
 // What is systematic in the steps: the scale of depth, and corners that lie on what moves.
@@ -19,8 +18,8 @@ constexpr double kOfWay = 0.05, kOfTurn = 0.03, kTurnOfWay_rad_m = 0.02;
 constexpr double kCarried_m_s = 0.005, kCarried_rad_s = 0.003;
 
 Matrix6d gap(double elapsed_s) {
-  return independentCovariance(kSpeed_m_s * elapsed_s,
-                               std::min(kTurn_rad_s * elapsed_s, kAnyAngle_rad));
+  return independentCovariance(kRobotSpeed_m_s * elapsed_s,
+                               std::min(kRobotTurn_rad_s * elapsed_s, kAnyAngle_rad));
 }
 
 }  // namespace

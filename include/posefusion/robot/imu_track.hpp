@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "posefusion/robot/config.hpp"
 #include "posefusion/robot/motion_prior.hpp"
@@ -47,6 +48,10 @@ class ImuTrack {
   void clear() { *this = ImuTrack(config_); }
 
  private:
+  using Place = std::deque<ImuSample>::const_iterator;
+
+  /// The samples after a moment, up to another one.
+  std::pair<Place, Place> within(std::int64_t from_ns, std::int64_t to_ns) const;
   void watch(const ImuSample& sample);
   std::optional<Eigen::Vector3d> rateAt(std::int64_t stamp_ns) const;
   std::optional<Eigen::Matrix3d> turnBetween(std::int64_t from_ns, std::int64_t to_ns,
