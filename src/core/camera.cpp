@@ -90,24 +90,23 @@ std::string describe(const PinholeCamera& c) {
 constexpr double kLeastFocalLength = 0.0437;
 
 void validate(const PinholeCamera& camera) {
-  const auto require = [](bool good, const char* name, double value, const char* expected) {
-    if (good) return;
-    throw InputError(std::string("camera: ") + name + " is " + std::to_string(value) +
-                     ", expected " + expected);
-  };
-  require(camera.width > 0, "width", camera.width, "more than 0 pixels");
-  require(camera.height > 0, "height", camera.height, "more than 0 pixels");
-  require(std::isfinite(camera.fx) && camera.fx > 0, "fx", camera.fx, "a focal length above 0");
-  require(std::isfinite(camera.fy) && camera.fy > 0, "fy", camera.fy, "a focal length above 0");
+  require(camera.width > 0, "camera: width", camera.width, "more than 0 pixels");
+  require(camera.height > 0, "camera: height", camera.height, "more than 0 pixels");
+  require(std::isfinite(camera.fx) && camera.fx > 0, "camera: fx", camera.fx,
+          "a focal length above 0");
+  require(std::isfinite(camera.fy) && camera.fy > 0, "camera: fy", camera.fy,
+          "a focal length above 0");
   // 525 that was written as 5.25, or a length in metres.
-  require(camera.fx > kLeastFocalLength * camera.width, "fx", camera.fx,
+  require(camera.fx > kLeastFocalLength * camera.width, "camera: fx", camera.fx,
           "a focal length in pixels, of a view of less than 170 degrees");
-  require(camera.fy > kLeastFocalLength * camera.height, "fy", camera.fy,
+  require(camera.fy > kLeastFocalLength * camera.height, "camera: fy", camera.fy,
           "a focal length in pixels, of a view of less than 170 degrees");
-  require(camera.cx > 0 && camera.cx < camera.width, "cx", camera.cx, "a column of the image");
-  require(camera.cy > 0 && camera.cy < camera.height, "cy", camera.cy, "a row of the image");
+  require(camera.cx > 0 && camera.cx < camera.width, "camera: cx", camera.cx,
+          "a column of the image");
+  require(camera.cy > 0 && camera.cy < camera.height, "camera: cy", camera.cy,
+          "a row of the image");
   for (const double d : camera.distortion) {
-    require(std::isfinite(d), "a distortion coefficient", d, "a finite number");
+    require(std::isfinite(d), "camera: a distortion coefficient", d, "a finite number");
   }
 }
 

@@ -109,13 +109,8 @@ cv::Rect knownPart(const OccupancyGrid& grid) {
 }  // namespace
 
 void validate(const PlanConfig& config) {
-  const auto require = [](bool holds, const char* name, double value, const char* expected) {
-    if (holds) return;
-    throw InputError(std::string("plan: ") + name + ": is " + std::to_string(value) +
-                     ", expected " + expected);
-  };
-  require(config.cut_m > 0 && config.cut_m <= 100, "cut", config.cut_m, "0 to 100 m");
-  require(config.scale >= 1 && config.scale <= 10000, "scale", config.scale, "1 to 10000");
+  require(config.cut_m > 0 && config.cut_m <= 100, "plan: cut:", config.cut_m, "0 to 100 m");
+  require(config.scale >= 1 && config.scale <= 10000, "plan: scale:", config.scale, "1 to 10000");
 }
 
 std::string floorPlan(const OccupancyGrid& grid, const TriangleMesh& mesh,

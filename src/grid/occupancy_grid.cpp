@@ -26,12 +26,6 @@ constexpr float kBeforeEnd = 1.0F;
 constexpr int kFillFrom = 5, kFillRounds = 3;
 constexpr float kStep = 0.5F;  // along a ray, cells
 
-void require(bool holds, const char* name, double value, const char* expected) {
-  if (holds) return;
-  throw InputError(std::string("grid: ") + name + ": is " + std::to_string(value) + ", expected " +
-                   expected);
-}
-
 /// Of the positions that are numbers.
 Eigen::AlignedBox2d boundsOf(const SurfelArrays& s) {
   Eigen::AlignedBox2d box;
@@ -53,11 +47,11 @@ void fillGaps(cv::Mat& cells) {
 }  // namespace
 
 void validate(const GridConfig& c) {
-  require(c.cell_m >= 0.001 && c.cell_m <= 10, "cell", c.cell_m, "0.001 to 10 m");
-  require(c.lowest_m >= 0 && c.lowest_m < c.highest_m, "lowest", c.lowest_m,
+  require(c.cell_m >= 0.001 && c.cell_m <= 10, "grid: cell:", c.cell_m, "0.001 to 10 m");
+  require(c.lowest_m >= 0 && c.lowest_m < c.highest_m, "grid: lowest:", c.lowest_m,
           "0 m to less than highest");
-  require(c.highest_m <= 100, "highest", c.highest_m, "at most 100 m");
-  require(c.clear_m >= c.lowest_m, "clear", c.clear_m, "at least lowest");
+  require(c.highest_m <= 100, "grid: highest:", c.highest_m, "at most 100 m");
+  require(c.clear_m >= c.lowest_m, "grid: clear:", c.clear_m, "at least lowest");
 }
 
 std::size_t OccupancyGrid::count(std::int8_t state) const {
@@ -79,7 +73,7 @@ GridMaker::GridMaker(const SurfelArrays& surfels, const GridConfig& config) : co
   const cv::Size size(static_cast<int>(cells(box.max().x() + kMargin_m - grid_.low_x_m)) + 1,
                       static_cast<int>(cells(box.max().y() + kMargin_m - grid_.low_y_m)) + 1);
   constexpr double kMostCells = 1e8;
-  require(static_cast<double>(size.width) * size.height <= kMostCells, "cell", config.cell_m,
+  require(static_cast<double>(size.width) * size.height <= kMostCells, "grid: cell:", config.cell_m,
           "one that gives at most 100 million cells");
   upright_ = cv::Mat(size, CV_32FC1, cv::Scalar(0));
   flat_ = cv::Mat(size, CV_32FC1, cv::Scalar(0));

@@ -52,22 +52,18 @@ bool isWithin(float value, float low, float high) { return value >= low && value
 
 /// The first value of a surfel that cannot be, and would make rendering endless or overflow.
 void checkValues(const SurfelArrays& s) {
-  const auto require = [](bool good, const char* name, double value, const char* expected) {
-    if (good) return;
-    throw InputError(std::string("the ") + name + " of a surfel is " + std::to_string(value) +
-                     ", expected " + expected);
-  };
   for (std::size_t i = 0; i < s.size(); ++i) {
     for (const float place : {s.x[i], s.y[i], s.z[i]}) {
-      require(isWithin(place, -kFarthest_m, kFarthest_m), "place", place, "less than 1e7 m");
+      require(isWithin(place, -kFarthest_m, kFarthest_m), "the place of a surfel", place,
+              "less than 1e7 m");
     }
     const float normal2 = s.nx[i] * s.nx[i] + s.ny[i] * s.ny[i] + s.nz[i] * s.nz[i];
-    require(isWithin(normal2, 1 - 2 * kUnitTolerance, 1 + 2 * kUnitTolerance), "normal's length",
-            std::sqrt(normal2), "1");
-    require(s.radius[i] > 0 && s.radius[i] <= kLargestRadius_m, "radius", s.radius[i],
-            "more than 0 and at most 10 m");
-    require(s.violations[i] >= 0 && s.violations[i] <= kMostViolations, "violations",
-            s.violations[i], "0 to 1000000");
+    require(isWithin(normal2, 1 - 2 * kUnitTolerance, 1 + 2 * kUnitTolerance),
+            "the normal's length of a surfel", std::sqrt(normal2), "1");
+    require(s.radius[i] > 0 && s.radius[i] <= kLargestRadius_m, "the radius of a surfel",
+            s.radius[i], "more than 0 and at most 10 m");
+    require(s.violations[i] >= 0 && s.violations[i] <= kMostViolations,
+            "the violations of a surfel", s.violations[i], "0 to 1000000");
   }
 }
 

@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kLeastCell_m = 1e-4, kMostCell_m = 1.0;
 
-void require(bool holds, const char* name, double value, const char* expected) {
-  if (holds) return;
-  throw InputError(std::string("mesh: ") + name + ": is " + std::to_string(value) + ", expected " +
-                   expected);
-}
-
 /// The triangles whose corners are all seen.
 std::vector<char> seenTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                 const std::vector<char>& seen) {
@@ -33,11 +27,13 @@ std::vector<char> seenTriangles(const std::vector<std::array<std::uint32_t, 3>>&
 }  // namespace
 
 void validate(const MeshConfig& config) {
-  require(config.cell_m >= kLeastCell_m && config.cell_m <= kMostCell_m, "cell", config.cell_m,
-          "0.0001 to 1 m");
-  require(config.bridge_m >= 0 && config.bridge_m <= 1, "bridge", config.bridge_m, "0 to 1 m");
-  require(config.least_surfels >= 1, "least surfels", config.least_surfels, "at least 1");
-  require(config.memory_limit_mb > 0, "memory limit", config.memory_limit_mb, "more than 0 MB");
+  require(config.cell_m >= kLeastCell_m && config.cell_m <= kMostCell_m,
+          "mesh: cell:", config.cell_m, "0.0001 to 1 m");
+  require(config.bridge_m >= 0 && config.bridge_m <= 1, "mesh: bridge:", config.bridge_m,
+          "0 to 1 m");
+  require(config.least_surfels >= 1, "mesh: least surfels:", config.least_surfels, "at least 1");
+  require(config.memory_limit_mb > 0, "mesh: memory limit:", config.memory_limit_mb,
+          "more than 0 MB");
 }
 
 TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace pf {
 
@@ -11,5 +12,11 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Throws InputError unless it holds: `what` is `value`, and what was expected.
+inline void require(bool holds, const char* what, double value, const char* expected) {
+  if (holds) return;
+  throw InputError(std::string(what) + " is " + std::to_string(value) + ", expected " + expected);
+}
 
 }  // namespace pf
