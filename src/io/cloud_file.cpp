@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
@@ -34,16 +33,12 @@ void writePcd(const SurfelArrays& s, std::ostream& out) {
 
 }  // namespace
 
-void requireCloudName(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".pcd" || ending == ".ply") return;
-  throw InputError(path + ": ends in '" + ending + "', expected .pcd or .ply");
-}
+void requireCloudName(const std::string& path) { requireEnding(path, {".pcd", ".ply"}); }
 
 void saveCloud(const std::string& path, const SurfelArrays& surfels) {
   requireCloudName(path);
   if (surfels.size() == 0) throw InputError(path + ": no points to write, expected some");
-  if (std::filesystem::path(path).extension() == ".ply") {
+  if (endingOf(path) == ".ply") {
     saveSurfels(path, surfels);
     return;
   }

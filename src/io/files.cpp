@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -80,6 +81,20 @@ std::string readFile(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+std::string endingOf(const std::string& path) {
+  return std::filesystem::path(path).extension().string();
+}
+
+void requireEnding(const std::string& path, const std::vector<std::string>& endings) {
+  const std::string ending = endingOf(path);
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
+  std::string expected = endings.front();
+  for (std::size_t i = 1; i < endings.size(); ++i) {
+    expected += (i + 1 < endings.size() ? ", " : " or ") + endings[i];
+  }
+  throw InputError(path + ": ends in '" + ending + "', expected " + expected);
 }
 
 void makeFolder(const std::string& path) {

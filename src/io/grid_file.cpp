@@ -38,11 +38,7 @@ void savePgm(const std::string& path, const cv::Mat& image) {
 
 }  // namespace
 
-void requireGridName(const std::string& path) {
-  if (fs::path(path).extension() == ".yaml") return;
-  throw InputError(path + ": ends in '" + fs::path(path).extension().string() +
-                   "', expected .yaml");
-}
+void requireGridName(const std::string& path) { requireEnding(path, {".yaml"}); }
 
 void saveGrid(const std::string& path, const OccupancyGrid& grid, bool png) {
   requireGridName(path);

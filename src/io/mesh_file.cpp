@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "glb.hpp"
 #include "posefusion/core/error.hpp"
@@ -17,10 +16,6 @@ namespace {
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kFaceBytes = 1 + sizeof(Triangle);  // how many corners, then they
-
-std::string endingOf(const std::string& path) {
-  return std::filesystem::path(path).extension().string();
-}
 
 void writePly(const TriangleMesh& mesh, std::ostream& out) {
   out << plyHeader({{"vertex", mesh.size(), pointProperties()},
@@ -91,11 +86,7 @@ TriangleMesh readMesh(const std::string& text) {
 
 }  // namespace
 
-void requireMeshName(const std::string& path) {
-  const std::string ending = endingOf(path);
-  if (ending == ".ply" || ending == ".obj" || ending == ".glb") return;
-  throw InputError(path + ": ends in '" + ending + "', expected .ply, .obj or .glb");
-}
+void requireMeshName(const std::string& path) { requireEnding(path, {".ply", ".obj", ".glb"}); }
 
 void saveMesh(const std::string& path, const TriangleMesh& mesh) {
   requireMeshName(path);

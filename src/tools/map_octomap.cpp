@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "map_plans.hpp"
@@ -47,9 +46,7 @@ void fill(const std::string& file, octomap::OcTree& tree) {
 }
 
 void writeOctomap(const OctomapOptions& options) {
-  if (std::filesystem::path(options.output).extension() != ".bt") {
-    throw InputError(options.output + ": expected a name that ends in .bt");
-  }
+  requireEnding(options.output, {".bt"});
   octomap::OcTree tree(options.voxel_m);
   fill(options.file, tree);
   AtomicFile file(options.output);

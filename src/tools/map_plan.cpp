@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "map_floor.hpp"
 #include "map_plans.hpp"
-#include "posefusion/core/error.hpp"
 #include "posefusion/grid/floor_plan.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/mesh/surfel_mesh.hpp"
@@ -19,9 +17,7 @@ struct PlanOptions {
 };
 
 void writePlan(const PlanOptions& options) {
-  if (std::filesystem::path(options.output).extension() != ".svg") {
-    throw InputError(options.output + ": expected a name that ends in .svg");
-  }
+  requireEnding(options.output, {".svg"});
   validate(options.config);
   const FloorMap map = readFloorMap(options.file);
   const OccupancyGrid grid = gridOf(map, {});

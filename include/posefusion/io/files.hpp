@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace pf {
 
@@ -34,6 +35,13 @@ class AtomicFile {
 
 /// The whole of a text file. Throws InputError naming it.
 std::string readFile(const std::string& path);
+
+/// ".ply" of "map.ply"; empty where the name has none.
+std::string endingOf(const std::string& path);
+
+/// Throws InputError naming the file unless its name ends in one of these, of which there is at
+/// least one: ".ply".
+void requireEnding(const std::string& path, const std::vector<std::string>& endings);
 
 /// Makes the folder and those above it. Throws InputError naming it when that fails, or when
 /// nothing can be written into it.
