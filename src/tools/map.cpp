@@ -135,59 +135,49 @@ void exportAll(const std::string& file, const std::string& folder) {
 int lookIntoMap(int argc, char** argv) {
   CommandLine app{"Looks into a map file of posefusion without changing it, or mends it in a copy.",
                   "posefusion_map"};
-  std::string file, folder;
+  std::string file, out;
   const auto command = [&](const char* name, const char* help) {
     CommandLine* added = app.addCommand(name, help);
     added->addOption("file", file, "map file, *.pfdb")->required();
     return added;
   };
-  const CommandLine* info = command("info", "prints what is in it");
-  const CommandLine* checking = command("check", "reads all of it; exit code 1 when it is damaged");
+  const auto output = [&](CommandLine* of, const char* help) {
+    of->addOption("-o,--output", out, help)->required();
+  };
+  command("info", "prints what is in it")->does([&] { printInfo(file); });
+  command("check", "reads all of it; exit code 1 when it is damaged")->does([&] { check(file); });
   CommandLine* const exporting =
       command("export", "writes map.ply trajectory.txt keyframes/ plan.png");
-  exporting->addOption("-o,--output", folder, "folder to write into")->required();
-  std::string repaired;
+  output(exporting, "folder to write into");
+  exporting->does([&] { exportAll(file, out); });
   CommandLine* const repairing =
       command("repair", "writes what can be read of a damaged map into a new file");
-  repairing->addOption("-o,--output", repaired, "the new file")->required();
-  std::string calibration, picture;
+  output(repairing, "the new file");
+  repairing->does([&] { repair(file, out); });
+  std::string picture;
   CommandLine* const calibrating =
       command("calibration", "writes what its depth was corrected by into a calibration file");
-  calibrating->addOption("-o,--output", calibration, "the calibration file")->required();
+  output(calibrating, "the calibration file");
   calibrating->addOption("--picture", picture, "PNG of the field");
-  std::string refined;
+  calibrating->does([&] { exportCalibration(file, out, picture); });
   CommandLine* const refining =
       command("refine", "aligns all keyframes that see the same surface, into a new file");
-  refining->addOption("-o,--output", refined, "the new file")->required();
-  std::string second, merged;
+  output(refining, "the new file");
+  refining->does([&] { refineMap(file, out); });
+  std::string second;
   CommandLine* const merging =
       command("merge", "makes one map of two that know a place in common, in a new file");
   merging->addOption("second", second, "map file that comes into the coordinates of the first")
       ->required();
-  merging->addOption("-o,--output", merged, "the new file")->required();
+  output(merging, "the new file");
+  merging->does([&] { mergeMaps(file, second, out); });
   addMeshCommand(app);
   addGridCommand(app);
   addPlanCommand(app);
   addOctomapCommand(app);
   addCloudCommand(app);
   return runTool(app, argc, argv, [&] {
-    if (*merging) {
-      mergeMaps(file, second, merged);
-    } else if (*refining) {
-      refineMap(file, refined);
-    } else if (*repairing) {
-      repair(file, repaired);
-    } else if (*calibrating) {
-      exportCalibration(file, calibration, picture);
-    } else if (*info) {
-      printInfo(file);
-    } else if (*checking) {
-      check(file);
-    } else if (*exporting) {
-      exportAll(file, folder);
-    } else {
-      app.act();
-    }
+    app.act();
     return 0;
   });
 }
