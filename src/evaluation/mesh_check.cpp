@@ -54,27 +54,9 @@ std::size_t countCovered(const SurfaceSamples& seen, const SurfaceSamples& discs
   return static_cast<std::size_t>(std::count(covered.begin(), covered.end(), 1));
 }
 
-/// Brings samples into another frame.
-void move(const Eigen::Isometry3d& T_to_from, SurfaceSamples& samples) {
-  const Eigen::Isometry3f T = T_to_from.cast<float>();
-  for (Vector3f& p : samples.positions) p = T * p;
-  for (Vector3f& n : samples.normals) n = T.linear() * n;
-}
-
-/// The centres of surfels, as discs without extent.
-SurfaceSamples centresOf(const SurfelArrays& surfels) {
-  SurfaceSamples centres;
-  centres.radius_m = 0;
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    centres.positions.emplace_back(surfels.x[i], surfels.y[i], surfels.z[i]);
-    centres.normals.emplace_back(surfels.nx[i], surfels.ny[i], surfels.nz[i]);
-  }
-  return centres;
-}
-
 /// Triangles whose corners and middle are all far from the centres of all surfels.
 std::size_t countInvented(const TriangleMesh& mesh, const SurfelArrays& surfels) {
-  const SurfaceSamples centres = centresOf(surfels);
+  const SurfaceSamples centres = centresOf(surfels, Eigen::Isometry3d::Identity());
   std::vector<Vector3f> middles;
   for (const auto& t : mesh.triangles) {
     middles.push_back((mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3);
@@ -123,8 +105,7 @@ double MeshScore::coverage() const {
 double shareCovered(const SurfaceSamples& seen, const SurfelArrays& surfels,
                     const Eigen::Isometry3d& T_truth_map) {
   if (seen.positions.empty() || surfels.size() == 0) return 0;
-  SurfaceSamples discs = centresOf(surfels);
-  move(T_truth_map, discs);
+  const SurfaceSamples discs = centresOf(surfels, T_truth_map);
   return static_cast<double>(countCovered(seen, discs, surfels.radius)) /
          static_cast<double>(seen.positions.size());
 }

@@ -19,24 +19,6 @@ constexpr float kSameFacing = 0.8F;      // 37 degrees
 constexpr float kFacingOfTruth = 0.5F;   // 60 degrees: a surfel's normal is the noisier one
 constexpr float kTruthBeyond_m = 0.10F;  // true surface is looked for so far beyond the layers
 
-using Points = std::vector<Eigen::Vector3f>;
-
-struct MovedSurfels {
-  Points positions, normals;
-  float largest_radius = 0;
-};
-
-MovedSurfels moved(const SurfelArrays& s, const Eigen::Isometry3d& T_truth_map) {
-  const Eigen::Isometry3f T = T_truth_map.cast<float>();
-  MovedSurfels out;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    out.positions.push_back(T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
-    out.normals.push_back(T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]));
-    out.largest_radius = std::max(out.largest_radius, s.radius[i]);
-  }
-  return out;
-}
-
 float distanceToDisc(const Eigen::Vector3f& point, const Eigen::Vector3f& center,
                      const Eigen::Vector3f& normal, float radius) {
   const Eigen::Vector3f step = point - center;
@@ -62,6 +44,23 @@ bool isOneSurface(float at, const std::vector<float>& truth) {
 
 }  // namespace
 
+void move(const Eigen::Isometry3d& T_to_from, SurfaceSamples& samples) {
+  const Eigen::Isometry3f T = T_to_from.cast<float>();
+  for (Eigen::Vector3f& p : samples.positions) p = T * p;
+  for (Eigen::Vector3f& n : samples.normals) n = T.linear() * n;
+}
+
+SurfaceSamples centresOf(const SurfelArrays& surfels, const Eigen::Isometry3d& T_to_map) {
+  SurfaceSamples centres;
+  centres.radius_m = 0;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    centres.positions.emplace_back(surfels.x[i], surfels.y[i], surfels.z[i]);
+    centres.normals.emplace_back(surfels.nx[i], surfels.ny[i], surfels.nz[i]);
+  }
+  move(T_to_map, centres);
+  return centres;
+}
+
 std::vector<float> distancesToSurface(const std::vector<Eigen::Vector3f>& points,
                                       const SurfaceSamples& truth) {
   const PointGrid grid(truth.positions);
@@ -85,13 +84,15 @@ std::vector<float> distancesToSurface(const std::vector<Eigen::Vector3f>& points
 std::vector<float> distancesToSurface(const SurfelArrays& surfels,
                                       const Eigen::Isometry3d& T_truth_map,
                                       const SurfaceSamples& truth) {
-  return distancesToSurface(moved(surfels, T_truth_map).positions, truth);
+  return distancesToSurface(centresOf(surfels, T_truth_map).positions, truth);
 }
 
 std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,
                                      const Eigen::Isometry3d& T_truth_map,
                                      const SurfaceSamples& truth) {
-  const MovedSurfels map = moved(surfels, T_truth_map);
+  const SurfaceSamples map = centresOf(surfels, T_truth_map);
+  float largest_radius = 0;
+  for (const float radius : surfels.radius) largest_radius = std::max(largest_radius, radius);
   const PointGrid surfel_grid(map.positions), truth_grid(truth.positions);
   std::vector<char> doubled(surfels.size(), 0);
   parallelFor(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -100,7 +101,7 @@ std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,
       const NormalLine line{map.positions[i], map.normals[i]};
       float at = 0;
       layers.clear();
-      surfel_grid.visit(line.box(kMostDoubled_m, map.largest_radius), [&](std::size_t k) {
+      surfel_grid.visit(line.box(kMostDoubled_m, largest_radius), [&](std::size_t k) {
         const float radius = surfels.radius[k];
         if (!line.meets(map.positions[k], map.normals[k], radius, kSameFacing, at)) return;
         const float apart = std::abs(at);

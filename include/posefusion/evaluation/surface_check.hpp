@@ -15,6 +15,12 @@ struct SurfaceSamples {
   float radius_m = 0.03F;  ///< of all discs
 };
 
+/// Brings samples into another frame.
+void move(const Eigen::Isometry3d& T_to_from, SurfaceSamples& samples);
+
+/// The centres of surfels in another frame, as discs without extent.
+SurfaceSamples centresOf(const SurfelArrays& surfels, const Eigen::Isometry3d& T_to_map);
+
 /// A surfel farther from all true surface than this counts as so far.
 constexpr float kFarFromSurface_m = 0.5F;
 
