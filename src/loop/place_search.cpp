@@ -139,7 +139,8 @@ Grid makeGrid(const PlaceQuery& query, const MapPose& around, const Eigen::Vecto
   for (const SeenFloor& floor : query.beside) ups.push_back(floor.up);
   grid.fragment = around.fragment;
   grid.T_map_grid = T_map_around;
-  grid.T_map_grid.linear() = T_map_around.linear() * levelFromOptical(up_before).linear().transpose();
+  grid.T_map_grid.linear() =
+      T_map_around.linear() * levelFromOptical(up_before).linear().transpose();
   grid.shape.headings = config.headings;
   grid.shape.phases =
       std::max(1, static_cast<int>(std::lround(2.0 * M_PI / (config.headings * kBin_rad))));
