@@ -9,8 +9,8 @@
 namespace pf {
 namespace {
 
-// The last poses before a loss are the worst there are: they are told with the covariance of an
-// alignment that believed the wrong things.
+// Error of the last pose before a loss, which is the worst there is: its covariance is that of an
+// alignment that took wrong correspondences for right ones.
 constexpr double kAtLoss_m = 0.15, kAtLoss_rad = 0.06;
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace pf {
 
-/// Where dead reckoning puts the first keyframe of a fragment, from a keyframe of another: as it
-/// was told or, where both fragments were reckoned from a third, by way of that.
+/// Where dead reckoning puts the first keyframe of a fragment, from a keyframe of another: directly
+/// or, where both fragments were reckoned from a third, through that.
 std::optional<PoseConstraint> PoseGraph::reckonedTo(int fragment, int in) const {
   const auto to = [this](int which) {
     return std::find_if(reckoned_.begin(), reckoned_.end(),

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 
 constexpr double kMargin_m = 0.2;
 constexpr int kLeastRays = 2;  // one may go through a gap between surfels
-// Less surface in a cell is in nobody's way: shares of the cell's own area.
+// Less surface in a cell is no obstacle: shares of the cell's own area.
 constexpr double kLeastUpright = 1.0, kLeastFlat = 0.25;
 constexpr float kFlat = 0.707F;  // 45 degrees
 // A wall stands in the cell that most of it is in, not in one that its noise reaches.

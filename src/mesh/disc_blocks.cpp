@@ -17,7 +17,7 @@ constexpr std::size_t kGrain = 4096;
 // triangles, in pieces and as a whole.
 constexpr double kBytesPerBlock = 10'000;
 
-/// One disc and one block that it speaks of.
+/// One disc and one block that it reaches.
 struct Entry {
   std::uint64_t block = 0;
   std::uint32_t surfel = 0;
@@ -45,7 +45,7 @@ std::size_t countOf(const CellRange& range) {
   throw InputError(text);
 }
 
-/// How many blocks each surfel speaks of.
+/// How many blocks each surfel reaches.
 std::vector<std::uint32_t> blockCounts(const DiscMaker& maker, std::size_t surfels) {
   std::vector<std::uint32_t> counts(surfels, 0);
   parallelFor(surfels, kGrain, [&](std::size_t begin, std::size_t end) {

@@ -11,7 +11,7 @@ namespace {
 constexpr float kDiagonal = 1.7321F;
 constexpr float kDepth = 2.0F;  // cells
 // Of a surfel that was seen from very far or aslant no more counts, in bridges: it must not cover
-// what nobody saw.
+// unobserved space.
 constexpr float kMostRadius = 0.4F;
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace pf {
 
-/// A surfel as a mesh is made of it. It speaks of a flat cylinder around it: up to `reach` beside
+/// A surfel as a mesh is made of it. It reaches as far as a flat cylinder: up to `reach` beside
 /// its centre and up to `depth` before and behind it (m).
 struct Disc {
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
@@ -65,7 +65,7 @@ class DiscMaker {
   /// False where the surfel has no finite position, normal or radius.
   bool make(std::size_t i, Disc& disc) const;
 
-  /// The cells that the disc speaks of any corner of. False where they are too far away to count.
+  /// The cells of which the disc reaches any corner. False where they are too far away to count.
   bool cells(const Disc& disc, CellRange& range) const;
 
  private:
@@ -73,7 +73,7 @@ class DiscMaker {
   float cell_m_, bridge_m_, depth_m_;
 };
 
-/// Which surfels speak of which block of the lattice.
+/// Which surfels reach which block of the lattice.
 struct DiscBlocks {
   BlockLattice lattice;
   std::vector<std::size_t> first;      ///< of block i in `surfels`; one more at the end
@@ -85,7 +85,7 @@ struct DiscBlocks {
 DiscBlocks discBlocks(const SurfelArrays& surfels, const MeshConfig& config);
 
 /// Calls visit(place in the block, disc, where the point lies to it) for the points of block i that
-/// each of its discs speaks of, disc by disc. `pointAt(place, cell, point)`: the point of a cell,
+/// each of its discs reaches, disc by disc. `pointAt(place, cell, point)`: the point of a cell,
 /// false where it has none.
 template <typename PointAt, typename Visit>
 void forEachPointOf(const DiscMaker& maker, const DiscBlocks& blocks, std::size_t i,

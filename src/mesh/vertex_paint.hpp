@@ -12,7 +12,7 @@ namespace pf {
 struct PaintedVertices {
   std::vector<Eigen::Vector3f> normals;
   std::vector<MeshColor> colors;
-  std::vector<char> seen;  ///< 1: enough surfels speak of it, the nearest within the bridge
+  std::vector<char> seen;  ///< 1: enough surfels reach it, the nearest within the bridge
 };
 
 /// Only surfels of the side that the net faces count. Moves the vertices onto the mean plane of

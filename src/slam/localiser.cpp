@@ -138,7 +138,7 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
 bool Localiser::isReckonedWell(const Location& location, const PosePrior& prior,
                                double reckoned_s) const {
   const SparseMotion& motion = location.motion;
-  if (location.is_told && positionSigma(prior.covariance) <= VerifyLimits().max_sigma_m)
+  if (location.has_odometry && positionSigma(prior.covariance) <= VerifyLimits().max_sigma_m)
     return true;
   return motion.found && motion.inliers >= kManyCorners &&
          motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&

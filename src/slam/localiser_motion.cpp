@@ -35,14 +35,14 @@ PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
                             const std::optional<MotionPrior>& told, Location& location) {
   const double elapsed_s = secondsBetween(previous_.stamp_ns, stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
-  location.is_told = told && told->has_shift;
+  location.has_odometry = told && told->has_shift;
   location.step = stepOf(location.motion, told);
   const PosePrior prior = predict(location, elapsed_s);
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
   carry(location.step.value_or(MotionPrior()),
-        location.is_told || hasEnoughCorners(location.motion));
+        location.has_odometry || hasEnoughCorners(location.motion));
   location.carried = carried_;
   return prior;
 }
@@ -77,7 +77,8 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
   const Matrix6d A = adjoint(expected.T_before_after.inverse());
   // Against a step that is known apart from them, images of a bare wall, which say a little that
   // nothing moves, would gain weight with every frame.
-  const Matrix6d& before = location.is_told ? previous_.covariance_to_view : previous_.covariance;
+  const Matrix6d& before =
+      location.has_odometry ? previous_.covariance_to_view : previous_.covariance;
   prior.covariance = A * before * A.transpose() + expected.covariance;
   return prior;
 }

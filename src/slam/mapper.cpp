@@ -113,7 +113,7 @@ FrameStatus Mapper::process(const StaticFrame& measured) {
   s.frame.assign(input.frame, input.mask, s.config.frame, s.sensor);
   const std::optional<MapPose> before = s.trackedPose();
   Location location = s.locate(input);
-  s.tellRobot(location, before, before_ns);
+  s.checkRobot(location, before, before_ns);
   s.reckon(location, before, before_ns);
   s.countLostTime(location, before_ns);
   if (s.wantsFragment(input)) location = s.beginFragment();

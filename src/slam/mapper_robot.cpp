@@ -5,10 +5,10 @@
 
 namespace pf {
 
-/// What the robot's other sensors say of a motion is held against what the images show of it,
-/// where they show all of it.
-void Mapper::State::tellRobot(const Location& location, const std::optional<MapPose>& before,
-                              std::int64_t before_ns) {
+/// Compares the robot's other sensors with the motion that the images show, where they determine
+/// all of it.
+void Mapper::State::checkRobot(const Location& location, const std::optional<MapPose>& before,
+                               std::int64_t before_ns) {
   if (!before || location.outcome != FrameOutcome::fused || location.is_return ||
       location.tracking.free_directions > 0) {
     return;

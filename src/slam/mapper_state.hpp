@@ -118,8 +118,8 @@ struct Mapper::State {
   RenderedModel modelFrom(const MapPose& pose);
   const ModelView& viewFrom(const MapPose& pose);
   Location locate(const StaticFrame& input);
-  void tellRobot(const Location& location, const std::optional<MapPose>& before,
-                 std::int64_t before_ns);
+  void checkRobot(const Location& location, const std::optional<MapPose>& before,
+                  std::int64_t before_ns);
   void fuse(const StaticFrame& input, const Location& location);
   void follow(const Location& location, bool fill);
   void seek(const MapPose& last, Brightness brightness);

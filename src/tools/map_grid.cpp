@@ -48,7 +48,7 @@ void addGridCommand(CommandLine& app) {
   };
   number("--cell", config.cell_m, "side of a cell (m)");
   number("--lowest", config.lowest_m, "what is lower over the floor is floor (m)");
-  number("--highest", config.highest_m, "what is higher over the floor is in nobody's way (m)");
+  number("--highest", config.highest_m, "what is higher over the floor is no obstacle (m)");
   number("--clear", config.clear_m, "free is what rays pass lower than this and higher (m)");
   command->addFlag("--png", options->png, "PNG in place of PGM");
   command->does([options] { writeGrid(*options); });

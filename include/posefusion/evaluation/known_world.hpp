@@ -27,8 +27,8 @@ class KnownWorld {
     bool shouldBeKnown() const { return open >= kOpen && known >= kKnown; }
   };
 
-  /// An undistorted frame, its true mask of people (CV_8UC1, 0 = nobody; may be empty) and its true
-  /// pose. Nothing is learnt yet.
+  /// An undistorted frame, its true mask of people (CV_8UC1, 0 = no person; may be empty) and its
+  /// true pose. Nothing is learnt yet.
   View look(const RgbdFrame& frame, const cv::Mat& mask, const Eigen::Isometry3d& T_world_camera);
 
   /// The frame that look() was called with last was located: what it saw is known from now on.

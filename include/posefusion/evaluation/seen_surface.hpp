@@ -23,8 +23,8 @@ class SeenSurface {
   /// The samples must outlive it.
   SeenSurface(const SurfaceSamples& truth, const DepthSensor& sensor);
 
-  /// An undistorted frame, its mask of people (CV_8UC1, 0 = nobody; may be empty) and its true pose
-  /// in the frame of the samples.
+  /// An undistorted frame, its mask of people (CV_8UC1, 0 = no person; may be empty) and its true
+  /// pose in the frame of the samples.
   void add(const RgbdFrame& frame, const cv::Mat& mask, const Eigen::Isometry3d& T_truth_camera);
 
   std::size_t views() const { return views_; }

@@ -7,7 +7,7 @@ namespace pf {
 struct GridConfig {
   double cell_m = 0.05;
   double lowest_m = 0.10;   ///< what is lower is floor
-  double highest_m = 1.80;  ///< what is higher is in nobody's way
+  double highest_m = 1.80;  ///< what is higher is no obstacle
   double clear_m = 0.40;    ///< free is what rays pass lower than this, and higher
   double largest_m = 500;   ///< side of the largest grid
 };

@@ -30,8 +30,8 @@ class GridMaker {
   /// they reach wider than GridConfig::largest_m.
   GridMaker(const SurfelArrays& surfels, const GridConfig& config);
 
-  /// Cells that rays pass low and high, or on their way to the floor, are seen to be free: who
-  /// looks under a table has not seen that nothing is on it.
+  /// Cells that rays pass low and high, or on their way to the floor, are free: a ray under a table
+  /// does not show that the space above it is.
   void add(const SeenPoints& seen);
 
   /// Occupied where surfels stand, else free where that was seen, else unknown.

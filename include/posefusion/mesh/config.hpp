@@ -7,7 +7,7 @@ namespace pf {
 struct MeshConfig {
   double cell_m = 0.02;     ///< side of a cell, about that of a triangle
   double bridge_m = 0.035;  ///< the mesh ends so far beyond the last disc: gaps twice as wide close
-  int least_surfels = 2;    ///< a corner of the mesh that fewer surfels speak of is left out
+  int least_surfels = 2;    ///< a corner of the mesh that fewer surfels reach is left out
   double memory_limit_mb = 4096;  ///< that making it may take
 };
 

@@ -10,11 +10,11 @@ namespace pf {
 /// The surface that surfels lie on: the zero level of the distance to their planes, on a lattice
 /// around the origin of their frame, with colours and normals of the surfels around each corner. It
 /// has two sides where they have, and ends where they end: no corner is farther than 1.4
-/// times MeshConfig::bridge_m from the centre of a surfel that faces the same way, so nothing is
-/// invented where nobody has looked. Surfels without a finite position, normal or radius do not
-/// count, those without a colour give none (grey where nobody else does). The same bytes for any
-/// number of threads. Throws InputError where it would take more memory than the limit, before it
-/// starts, and where the surfels are too few for a single triangle.
+/// times MeshConfig::bridge_m from the centre of a surfel that faces the same way, so unobserved
+/// space gets no surface. Surfels without a finite position, normal or radius are left out; a
+/// vertex is grey where no surfel around it has a colour. The same bytes for any number of threads.
+/// Throws InputError where it would take more memory than the limit, before it starts, and where
+/// the surfels are too few for a single triangle.
 TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config);
 
 }  // namespace pf

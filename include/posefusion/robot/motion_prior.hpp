@@ -7,11 +7,11 @@
 
 namespace pf {
 
-/// The camera's motion between two moments, as something tells it that is no camera.
+/// The camera's motion between two moments, measured by another sensor of the robot.
 struct MotionPrior {
   Eigen::Isometry3d T_before_after = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the later camera's frame
-  bool has_shift = false;                  ///< else only the turn is told
+  bool has_shift = false;                  ///< else only the rotation is measured
 };
 
 /// A robot that walks (1 m/s) and turns (1 rad/s) does so with these root mean squares, and for

@@ -5,11 +5,10 @@
 
 namespace pf {
 
-/// How far a source of motions is believed, by what it told when the images told the motion too: a
-/// sequential test (Wald 1945) of "it tells the camera's motion" against the better of two that
-/// explain it without: "it tells nothing", and "it always says that nothing moves". A source that
-/// stands still beside a camera that stands still has shown nothing. Shift and turn are tested
-/// apart, and where both are told both have to pass.
+/// How far a motion sensor is believed, by its agreement with the images: a sequential test (Wald
+/// 1945) of the hypothesis that it measures the camera's motion against the better of two others:
+/// its output is unrelated to it, or is always zero motion. Without motion there is no evidence.
+/// Translation and rotation are tested apart, and where both are measured both have to pass.
 class MotionTrust {
  public:
   /// `covariance` (of the twist in the later camera's frame) is that of what was seen; it took

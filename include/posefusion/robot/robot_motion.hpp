@@ -16,14 +16,14 @@ struct MotionSourceReport {
   std::uint64_t received = 0;  ///< poses or samples
   std::uint64_t left_out = 0;  ///< of them: unusable
   std::string why_left_out;    ///< the last of those
-  std::uint64_t told = 0;      ///< motions between frames
+  std::uint64_t told = 0;      ///< motions between frames that it measured
   std::uint64_t missing = 0;   ///< between frames, while it was sent: not there, or not in time
   bool is_believed = false;
 };
 
 /// The camera's motion by the robot's other sensors: odometry and an inertial sensor, each believed
-/// once it has told what the images tell, and no longer than that. Odometry says nothing while the
-/// robot falls. What is late or missing is done without. Not thread safe.
+/// as long as it agrees with the images. Odometry is not used while the robot falls. What is late
+/// or missing is done without. Not thread safe.
 class RobotMotion {
  public:
   explicit RobotMotion(const RobotConfig& config) : odometry_(config), imu_(config) {}
@@ -31,10 +31,10 @@ class RobotMotion {
   void addOdometry(const StampedPose& pose);  ///< see OdometryTrack::add()
   void addImu(const ImuSample& sample);
 
-  /// What is known of the motion between two frames; nothing where nobody is believed.
+  /// What is known of the motion between two frames; nothing where no sensor is believed.
   std::optional<MotionPrior> between(std::int64_t from_ns, std::int64_t to_ns);
 
-  /// The images tell that it was this motion, with this covariance (twist in the later camera).
+  /// The motion as the images show it, with its covariance (twist in the later camera).
   void compare(std::int64_t from_ns, std::int64_t to_ns, const Eigen::Isometry3d& T_seen,
                const Matrix6d& covariance);
 

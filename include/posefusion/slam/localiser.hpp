@@ -50,10 +50,10 @@ struct Location {
   /// From the frame before: by corners, by the robot's other sensors, or by both; nothing where
   /// neither knows.
   std::optional<MotionPrior> step;
-  bool is_told = false;  ///< the robot's odometry is part of it
+  bool has_odometry = false;  ///< the robot's odometry is part of it
   /// Where the camera would be by these steps alone since the last fused frame; measured where
-  /// many corners or the robot's odometry told of each. Of a return, it tells what the loss has
-  /// torn apart.
+  /// many corners or the robot's odometry showed each. Of a return, it shows the drift during the
+  /// loss.
   PosePrior carried;
   std::string detail;
 
@@ -79,8 +79,8 @@ class Localiser {
 
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
   /// the last fused frame; `render` draws fragment(). A `forced` frame (see BlurScore) is not
-  /// believed enough to be fused. `told`: of the motion since lastStamp(), by what is believed
-  /// beside the camera.
+  /// believed enough to be fused. `told`: the motion since lastStamp() by the robot's other
+  /// sensors.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                   bool forced, const ModelView& view, const MapRenderers& render,
                   const std::optional<MotionPrior>& told = std::nullopt);

@@ -16,7 +16,7 @@ struct ProvisionalPose {
 /// Dead reckoning from the last known pose in the first fragment of the map on: by corners, by
 /// tracking in a fragment whose place is not known, or by nothing but how fast a robot moves. Four
 /// errors add up: those of the single steps; what is systematic in them, which grows with the way;
-/// what may have happened while nothing told of the motion; and what no step shows (a lift, a
+/// what may have happened while nothing measured the motion; and what no step shows (a lift, a
 /// trolley), both of which grow with the time. Not thread safe.
 class Reckoning {
  public:
