@@ -4,65 +4,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "place_scene.hpp"
 #include "posefusion/core/se3.hpp"
-#include "posefusion/loop/verify.hpp"
 #include "posefusion/loop/worker.hpp"
-#include "posefusion/map/fusion.hpp"
-#include "simulated_sequence.hpp"
 
 namespace pf {
 namespace {
-
-/// The small room, mapped at its true poses.
-struct MappedRoom {
-  SimulatedSequence sequence{"empty_box", 12};
-  SurfelMap map{stableAtOnce()};
-  MapPoints points;
-  Eigen::Vector3d up;
-
-  static MapConfig stableAtOnce() {
-    MapConfig config;
-    config.stable_confidence = 2;
-    return config;
-  }
-
-  MappedRoom() {
-    Fuser fuser;
-    for (int i = 0; i < sequence.frameCount(); ++i) fuser.fuse(frame(i), sequence.pose(i), map);
-    points = thinnedPoints(map);
-    const auto levels = findLevels(orientedPoints(points), -Eigen::Vector3d::UnitY(), 0.9);
-    up = levels ? levels->up : Eigen::Vector3d(0, 0, 0);
-  }
-
-  WorkingFrame frame(int index) const {
-    WorkingFrame working;
-    working.assign(sequence.frame(index).frame, cv::Mat(), FrameConfig{});
-    return working;
-  }
-};
-
-const MappedRoom& room() {
-  static const MappedRoom mapped;
-  return mapped;
-}
-
-/// `T` turned about the vertical and shifted horizontally, as by a fall.
-Eigen::Isometry3d afterFall(const Eigen::Isometry3d& T, double turn_rad, double shift_m) {
-  Eigen::Isometry3d moved = T;
-  const Eigen::Vector3d up = room().up;
-  moved.linear() = Eigen::AngleAxisd(turn_rad, up).toRotationMatrix() * T.linear();
-  const Eigen::Vector3d ahead = T.linear().col(2);
-  moved.translation() += shift_m * (ahead - ahead.dot(up) * up).normalized();
-  return moved;
-}
-
-double metresOff(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return (a.translation() - b.translation()).norm();
-}
-
-double radiansOff(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return logSo3(a.linear().transpose() * b.linear()).norm();
-}
 
 TEST(Levels, UpIsThatOfTheRoom) {
   // The camera of the small room looks a little down: up is not the picture's up.
@@ -226,94 +173,6 @@ TEST(LoopWorker, LooksInEachFragmentByItself) {
   ASSERT_TRUE(answer.place);
   EXPECT_EQ(answer.place->fragment, 2);
   EXPECT_LT(metresOff(answer.place->alignment.T_map_camera, room().sequence.pose(11)), 0.03);
-}
-
-TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
-  const Eigen::Isometry3d truth = room().sequence.pose(8);
-  Vector6d off;
-  off << 0.05, -0.03, 0.05, 0.03, 0.05, -0.02;
-  PlaceVerifier verifier{TrackingConfig{}};
-  const PlaceVerdict verdict =
-      verifier.verify(room().map, room().frame(8), {0, truth * expSe3(off)});
-  EXPECT_TRUE(verdict.accepted()) << name(verdict.doubt);
-  EXPECT_LT(metresOff(verdict.alignment.T_map_camera, truth), 0.02);
-  EXPECT_LT(radiansOff(verdict.alignment.T_map_camera, truth), 0.02);
-}
-
-TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
-  PlaceVerdict verdict;
-  verdict.alignment.converged = true;
-  verdict.agreement = {1.0, 1.0, 0.0, 0.0, 1.0, 0.2};
-  for (const double sigma_m : {0.03, 0.04}) {
-    verdict.alignment.covariance(1, 1) = sigma_m * sigma_m;
-    EXPECT_DOUBLE_EQ(positionSigma(verdict.alignment.covariance), sigma_m);
-    const PlaceDoubt doubt = judgePlace(verdict, verdict.alignment.T_map_camera, {});
-    EXPECT_EQ(doubt, sigma_m < 0.033 ? PlaceDoubt::none : PlaceDoubt::degenerate);
-  }
-}
-
-TEST(VerifyPlace, ABentMapIsBelievedWhereShapeAndPictureSayTheSame) {
-  PlaceVerdict verdict;
-  verdict.alignment.converged = true;
-  PlaceAgreement& agreement = verdict.agreement;
-  agreement.overlap = 0.7;
-  agreement.agreeing = 0.8;
-  const auto judged = [&](double spread, double correlation) {
-    agreement.spread = spread;
-    agreement.correlation = correlation;
-    return judgePlace(verdict, verdict.alignment.T_map_camera, {});
-  };
-  EXPECT_EQ(judged(0.15, 0.8), PlaceDoubt::none);
-  EXPECT_EQ(judged(0.05, 0.8), PlaceDoubt::disagrees) << "it may have slid";
-  EXPECT_EQ(judged(0.15, 0.7), PlaceDoubt::disagrees) << "it may be another room";
-  agreement.agreeing = 0.7;
-  EXPECT_EQ(judged(0.15, 0.8), PlaceDoubt::disagrees);
-}
-
-TEST(VerifyPlace, ATruePlaceIsNotBelievedThroughAGap) {
-  TrueFrame truth = room().sequence.frame(8);
-  PlaceVerifier verifier{TrackingConfig{}};
-  for (const double open : {0.8, 0.12}) {
-    const int covered = static_cast<int>((1.0 - open) * truth.frame.depth.cols);
-    truth.frame.depth.colRange(0, covered).setTo(0);
-    WorkingFrame frame;
-    frame.assign(truth.frame, cv::Mat(), FrameConfig{});
-    const PlaceVerdict verdict = verifier.verify(room().map, frame, {0, truth.T_map_camera});
-    EXPECT_EQ(verdict.accepted(), open > 0.5) << name(verdict.doubt);
-    EXPECT_EQ(verdict.doubt == PlaceDoubt::covered, open < 0.5) << name(verdict.doubt);
-  }
-}
-
-TEST(VerifyPlace, NoWrongPlaceIsAccepted) {
-  const WorkingFrame frame = room().frame(8);
-  const Eigen::Isometry3d truth = room().sequence.pose(8);
-  PlaceVerifier verifier{TrackingConfig{}};
-  int wrong = 0;
-  for (const double turn : {-0.7, -0.4, 0.4, 0.7}) {
-    for (const double shift : {-0.4, 0.0, 0.4}) {
-      const PlaceVerdict v = verifier.verify(room().map, frame, {0, afterFall(truth, turn, shift)});
-      const bool is_true = metresOff(v.alignment.T_map_camera, truth) < 0.1 &&
-                           radiansOff(v.alignment.T_map_camera, truth) < 0.05;
-      EXPECT_TRUE(is_true || !v.accepted()) << turn << " " << shift;
-      wrong += is_true ? 0 : 1;
-    }
-  }
-  EXPECT_GT(wrong, 4);
-}
-
-TEST(VerifyPlace, SeesWhenTheMapsSurfacesAreGone) {
-  // A frame whose walls stand half a metre farther sees through the map.
-  TrueFrame truth = room().sequence.frame(8);
-  cv::add(truth.frame.depth, 500, truth.frame.depth, truth.frame.depth > 0);  // mm
-  WorkingFrame frame;
-  frame.assign(truth.frame, cv::Mat(), FrameConfig{});
-  ModelView view;
-  RenderOptions options;
-  options.age = SurfelAge::all;
-  SurfelRenderer().render(room().map, frame.camera, truth.T_map_camera, options, view);
-  const PlaceAgreement agreement = compareViews(frame, view);
-  EXPECT_GT(agreement.seen_through, 0.8);
-  EXPECT_LT(agreement.agreeing, 0.1);
 }
 
 }  // namespace
