@@ -10,6 +10,7 @@
 #include "posefusion/segmentation/energy.hpp"
 #include "posefusion/segmentation/location.hpp"
 #include "posefusion/segmentation/mapped_people.hpp"
+#include "posefusion/segmentation/moving_objects.hpp"
 #include "posefusion/segmentation/paper_cut.hpp"
 #include "posefusion/segmentation/planes.hpp"
 #include "posefusion/segmentation/trunks.hpp"
@@ -45,6 +46,8 @@ void fadeLostJoints(const SceneGrid& grid, const std::vector<std::uint8_t>& labe
 }  // namespace
 
 struct PeopleSegmenter::State {
+  explicit State(const DepthSensor& sensor) : objects(sensor) {}
+
   cv::Mat depth_m;
   std::vector<TrackedPerson> people;
   Evidence evidence;
@@ -53,7 +56,8 @@ struct PeopleSegmenter::State {
   Unary unary;
   GridCutter cutter;
   PaperCutter paper_cutter;
-  std::vector<std::uint8_t> labels;
+  std::vector<std::uint8_t> labels;  // 1: a person
+  MovingObjects objects;
   int last_id = 0;
   PaceMeter pace_meter;
   float worth = 1.0F;  // of the frame, see Pace
@@ -65,11 +69,12 @@ struct PeopleSegmenter::State {
   void cut(const SegmentationConfig& config);
   void keepPeople(bool with_map);
   cv::Mat inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const;
-  void finish(const RgbdFrame& frame, int margin_px, Segmentation& result) const;
+  void takeOut(const RgbdFrame& frame, const std::vector<std::uint8_t>& taken, int margin_px,
+               Segmentation& result) const;
 };
 
 PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor)
-    : config_(config), sensor_(sensor), state_(std::make_unique<State>()) {}
+    : config_(config), sensor_(sensor), state_(std::make_unique<State>(sensor)) {}
 PeopleSegmenter::~PeopleSegmenter() = default;
 
 /// Samples the frame. The cells of carried people count on the grid of the last frame: where this
@@ -154,13 +159,43 @@ cv::Mat PeopleSegmenter::State::inMapMask(const RgbdFrame& frame, const cv::Mat&
   return upsampleMask(frame, depth_m, evidence.grid, mapped) & mask;
 }
 
-/// Brings the labels to full resolution and takes the people out of the depth.
-void PeopleSegmenter::State::finish(const RgbdFrame& frame, int margin_px,
-                                    Segmentation& result) const {
-  result.mask = upsampleMask(frame, depth_m, evidence.grid, labels);
+/// Takes these cells out of the depth, at full resolution.
+void PeopleSegmenter::State::takeOut(const RgbdFrame& frame, const std::vector<std::uint8_t>& taken,
+                                     int margin_px, Segmentation& result) const {
+  result.mask = upsampleMask(frame, depth_m, evidence.grid, taken);
   const double margin = margin_px * frame.depth.cols / kMarginWidth_px;
   result.static_depth =
       removeMasked(frame.depth, result.mask, static_cast<int>(std::lround(margin)));
+}
+
+/// False when there is nobody. Else `labels` are the people's.
+bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowTracker& flow,
+                                 const People& people) {
+  State& s = *state_;
+  s.labels.assign(s.evidence.grid.size(), 0);
+  if (s.people.empty() && people.people.empty()) return false;
+  carryPeople(flow, s.evidence.grid, s.people);
+  sampleMask(people.mask, frame.depth.size(), s.evidence.grid, s.evidence.shown);
+  mergeDetections(people, mayBeNew(people, s.evidence.shown, s.evidence.background),
+                  s.evidence.grid, s.worth, s.people);
+  s.planes.find(s.evidence.grid, s.evidence.flatness);
+  s.locate(config_.carry_s);
+  if (s.people.empty()) return false;
+  doubtTrunks(s.people, s.evidence.grid, s.evidence.flatness, s.evidence.background);
+  s.cut(config_);
+  return true;
+}
+
+/// Adds to `taken` the cells of what moves beside the people.
+void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
+                                  const Eigen::Isometry3d& T_view_camera,
+                                  std::vector<std::uint8_t>& taken, Segmentation& result) {
+  State& s = *state_;
+  if (view == nullptr || !config_.moving_objects) return s.objects.reset();
+  const Eigen::Isometry3d T_map_camera = view->T_map_camera * T_view_camera;
+  result.objects = s.objects.find({s.evidence.grid, frame.camera, *view, T_map_camera,
+                                   s.evidence.background, s.labels, frame.stamp_ns, s.worth});
+  for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
 }
 
 Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,
@@ -169,25 +204,21 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   State& s = *state_;
   s.worth = s.pace_meter.add(frame.stamp_ns).worth();
-  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
+  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) T_view_camera = s.motion.predict(*background, frame.stamp_ns);
-  if (!config_.enabled || (s.people.empty() && people.people.empty())) return result;
+  if (!config_.enabled) return result;
   s.takeGrid(frame, config_.grid_width);
-  carryPeople(flow, s.evidence.grid, s.people);
-  sampleMask(people.mask, frame.depth.size(), s.evidence.grid, s.evidence.shown);
   s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
     compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
   }
-  mergeDetections(people, mayBeNew(people, s.evidence.shown, s.evidence.background),
-                  s.evidence.grid, s.worth, s.people);
-  s.planes.find(s.evidence.grid, s.evidence.flatness);
-  s.locate(config_.carry_s);
-  if (s.people.empty()) return result;
-  doubtTrunks(s.people, s.evidence.grid, s.evidence.flatness, s.evidence.background);
-  s.cut(config_);
-  s.finish(frame, config_.margin_px, result);
+  const bool has_people = findPeople(frame, flow, people);
+  std::vector<std::uint8_t> taken = s.labels;
+  findObjects(frame, background, T_view_camera, taken, result);
+  const bool is_empty = std::all_of(taken.begin(), taken.end(), [](auto t) { return t == 0; });
+  if (has_people || !is_empty) s.takeOut(frame, taken, config_.margin_px, result);
+  if (!has_people) return result;
   result.in_map_mask = s.inMapMask(frame, result.mask);
   for (const TrackedPerson& tracked : s.people) {
     result.people.people.push_back(tracked.person);
@@ -200,7 +231,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
 Segmentation PeopleSegmenter::segmentAsThePaper(const RgbdFrame& frame, const People& people,
                                                 const std::optional<Eigen::Vector3d>& up_camera) {
   State& s = *state_;
-  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}};
+  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   if (!config_.enabled || people.people.empty()) return result;
   s.takeGrid(frame, config_.grid_width);
   const std::vector<Eigen::Vector3f> seeds = liftJoints(people, s.evidence.grid);
@@ -210,11 +241,11 @@ Segmentation PeopleSegmenter::segmentAsThePaper(const RgbdFrame& frame, const Pe
   terms.radius_m = static_cast<float>(config_.paper_radius_m);
   if (up_camera) terms.up = up_camera->cast<float>().normalized();
   s.paper_cutter.cut(s.evidence.grid, seeds, terms, s.labels);
-  s.finish(frame, config_.margin_px, result);
+  s.takeOut(frame, s.labels, config_.margin_px, result);
   result.people.people = people.people;
   return result;
 }
 
-void PeopleSegmenter::reset() { state_ = std::make_unique<State>(); }
+void PeopleSegmenter::reset() { state_ = std::make_unique<State>(sensor_); }
 
 }  // namespace pf

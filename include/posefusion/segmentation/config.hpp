@@ -10,6 +10,7 @@ namespace pf {
 /// Settings of the min-cut segmenter.
 struct SegmentationConfig {
   bool enabled = true;
+  bool moving_objects = true;
   std::string energy = "improved";
   double paper_sigma_m = 0.25;
   double paper_radius_m = 0.20;
@@ -24,7 +25,9 @@ struct SegmentationConfig {
 };
 
 inline void visitFields(SegmentationConfig& c, FieldVisitor& v) {
-  v.flag("enabled", c.enabled, "remove people from the depth");
+  v.flag("enabled", c.enabled, "remove people, and what else moves, from the depth");
+  v.flag("moving_objects", c.moving_objects,
+         "remove what moves and was not detected as a person: doors, chairs, what is carried");
   v.choice("energy", c.energy, {"improved", "paper"}, "terms of the cut");
   v.number("paper_sigma_m", c.paper_sigma_m, 1e-3, 10.0,
            "energy paper: length scale of the smoothness cost");

@@ -12,25 +12,29 @@
 #include "posefusion/frame/model_view.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/config.hpp"
+#include "posefusion/segmentation/moving_objects.hpp"
 
 namespace pf {
 
 /// Nobody farther (m) is looked for: depth cameras tell no person from a wall there.
 constexpr double kFarthestPerson_m = 8.0;
 
-/// A frame without its people.
+/// A frame without its people, and without what else moves.
 struct Segmentation {
-  cv::Mat mask;          ///< CV_8UC1, frame size, 255 = person; empty when there is none
+  cv::Mat mask;          ///< CV_8UC1, frame size, 255 = a person or a moving object; empty when
+                         ///< there is none
   cv::Mat in_map_mask;   ///< CV_8UC1, frame size, 255 = a surface of the map that is a person's, as
                          ///< a sure detection shows: what the map holds there must go; empty when
                          ///< there is none
-  cv::Mat static_depth;  ///< depth of the frame, people removed (0 or NaN); the very same pixels as
-                         ///< the input when there is nobody
+  cv::Mat static_depth;  ///< depth of the frame, the mask removed (0 or NaN); the very same pixels
+                         ///< as the input when there is none
   People people;         ///< as used: detected, or carried forward to this frame
+  std::vector<MovingObject> objects;  ///< in the map, beside the people; those just at rest too
 };
 
 /// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried
-/// forward between detections. Keeps the last mask and joints. Not thread safe.
+/// forward between detections; and, where there is a map, of what else moves. Keeps the last mask
+/// and joints. Not thread safe.
 class PeopleSegmenter {
  public:
   /// Of depth as `sensor` measures it.
@@ -54,6 +58,10 @@ class PeopleSegmenter {
 
  private:
   struct State;
+  bool findPeople(const RgbdFrame& frame, const FlowTracker& flow, const People& people);
+  void findObjects(const RgbdFrame& frame, const ModelView* view,
+                   const Eigen::Isometry3d& T_view_camera, std::vector<std::uint8_t>& taken,
+                   Segmentation& result);
   Segmentation segmentAsThePaper(const RgbdFrame& frame, const People& people,
                                  const std::optional<Eigen::Vector3d>& up_camera);
 

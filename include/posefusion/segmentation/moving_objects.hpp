@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "posefusion/segmentation/seen_before.hpp"
+
+namespace pf {
+
+/// Something that moves, whatever it is: a person who was not detected, a chair that is pushed, a
+/// door. In the frame of the map.
+struct MovingObject {
+  int id = 0;                                          ///< from 1 on, the same over frames
+  Eigen::AlignedBox3d box_m;                           ///< of what is seen of it
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< mean of what is seen of it
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
+  double odds = 0;         ///< for moving, in frames (at 30 Hz) of evidence; masked above 0
+  double unseen_s = 0;     ///< since it was last found
+  std::vector<int> cells;  ///< of the grid, in the newest frame
+  std::vector<Eigen::Vector3f> points_m;  ///< of the cells
+};
+
+/// What is known of a frame when its moving objects are looked for.
+struct MovingScene {
+  const SceneGrid& grid;
+  const PinholeCamera& camera;                 ///< of the frame
+  const ModelView& view;                       ///< the map from the last trusted pose
+  const Eigen::Isometry3d& T_map_camera;       ///< of the frame, as far as known
+  const std::vector<Background>& background;   ///< what the map says of the cells
+  const std::vector<std::uint8_t>& is_person;  ///< cells that are taken out anyway
+  std::int64_t stamp_ns;
+  float worth;  ///< of the frame, see Pace
+};
+
+/// Finds what moves by what contradicts the map and the frames of the last second: pieces of depth
+/// that stand before the map in places which were empty a moment ago. Each is followed, and the
+/// odds that it moves are added up (a sequential test, Wald 1945): what rests for a while is of the
+/// static world again. After the idea of StaticFusion (Scona et al. 2018) and of Co-Fusion (Ruenz
+/// and Agapito 2017). Not thread safe.
+class MovingObjects {
+ public:
+  explicit MovingObjects(const DepthSensor& sensor) : sensor_(sensor) {}
+
+  /// The objects seen in the frame, those at rest for a moment among them.
+  const std::vector<MovingObject>& find(const MovingScene& scene);
+
+  /// 1 = a cell of an object that moves, as of the last find().
+  const std::vector<std::uint8_t>& labels() const { return labels_; }
+
+  /// Nothing is known of the camera's place: what moved is forgotten.
+  void reset();
+
+ private:
+  struct Piece;
+  void findSeeds(const MovingScene& scene);
+  void carryObjects(const MovingScene& scene);
+  bool isOfMoving(const MovingScene& scene, int cell) const;
+  std::vector<Piece> grow(const MovingScene& scene);
+  Piece growFrom(const MovingScene& scene, int first);
+  double evidenceOf(const Piece& piece) const;
+  void follow(const MovingScene& scene, std::vector<Piece>& pieces, double elapsed_s);
+  static void place(const MovingScene& scene, double elapsed_s, Piece& piece, MovingObject& object);
+
+  DepthSensor sensor_;
+  SeenBefore before_;
+  std::vector<MovingObject> objects_;
+  std::vector<std::uint8_t> labels_;
+  std::vector<std::uint8_t> seeds_;     // 1: the place was empty a moment ago
+  std::vector<std::int16_t> carried_;   // object that the cell should be of, -1: none
+  std::vector<std::int32_t> piece_of_;  // while pieces grow; -1: none
+  int last_id_ = 0;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace pf

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "posefusion/core/depth_sensor.hpp"
+#include "posefusion/frame/model_view.hpp"
+#include "posefusion/segmentation/background.hpp"
+#include "posefusion/segmentation/grid.hpp"
+
+namespace pf {
+
+/// The depth of some frames of the last second, as grids: whether the place of what is seen now was
+/// empty then. Unlike the map it also knows space with nothing behind that was mapped, and what it
+/// says is of a certain moment. Not thread safe.
+class SeenBefore {
+ public:
+  /// The moments that are asked, so long ago: what is fast shows soon, what is slow later.
+  static constexpr std::array<double, 3> kAges_s = {0.2, 0.5, 1.0};
+
+  /// Takes in a frame's grid. `camera`: of the frame. Its pose is what know() tells.
+  void add(const SceneGrid& grid, const PinholeCamera& camera, std::int64_t stamp_ns);
+
+  /// A view has the pose of the frame whose stamp it has. In another fragment all is forgotten.
+  void know(const ModelView& view);
+
+  /// What each moment says of the cells of a frame at `stamp_ns`, seen from T_map_camera:
+  /// `nearer` = the place was seen to be empty, `agrees` = the same surface was there, `farther` =
+  /// something stood before it. Where there is no such moment all are unknown.
+  void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_map_camera, std::int64_t stamp_ns,
+               const DepthSensor& sensor);
+
+  /// By moment, cell by cell; as of the last compare().
+  const std::array<std::vector<Background>, kAges_s.size()>& moments() const { return moments_; }
+
+  bool wasFree(int cell) const { return said(cell, Background::nearer); }
+  bool wasThere(int cell) const { return said(cell, Background::agrees); }
+
+  void reset() { *this = SeenBefore(); }
+
+ private:
+  struct Moment {
+    ModelView view;  ///< depth, pose and stamp alone
+    bool is_located = false;
+  };
+
+  bool said(int cell, Background what) const;
+  const Moment* nearestTo(std::int64_t stamp_ns) const;
+
+  std::deque<Moment> kept_;  // by stamp
+  int fragment_ = kFirstFragment;
+  std::array<std::vector<Background>, kAges_s.size()> moments_;
+};
+
+}  // namespace pf
