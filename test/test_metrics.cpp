@@ -54,6 +54,9 @@ TEST(Statistics, OfAHandMadeList) {
   EXPECT_DOUBLE_EQ(s.median, 2.5);
   EXPECT_DOUBLE_EQ(s.max, 10);
   EXPECT_DOUBLE_EQ(s.rmse, std::sqrt((9.0 + 1 + 4 + 100) / 4));
+  EXPECT_DOUBLE_EQ(s.min, 1);
+  EXPECT_DOUBLE_EQ(s.squares_sum, 9.0 + 1 + 4 + 100);
+  EXPECT_DOUBLE_EQ(s.deviation, std::sqrt((1.0 + 9 + 4 + 36) / 4));
   EXPECT_EQ(statisticsOf({}).count, 0U);
 }
 

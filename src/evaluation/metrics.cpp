@@ -66,10 +66,15 @@ ErrorStatistics statisticsOf(std::vector<double> errors) {
   if (errors.empty()) return s;
   std::sort(errors.begin(), errors.end());
   const auto n = static_cast<double>(errors.size());
-  s.rmse = std::sqrt(std::inner_product(errors.begin(), errors.end(), errors.begin(), 0.0) / n);
+  s.squares_sum = std::inner_product(errors.begin(), errors.end(), errors.begin(), 0.0);
+  s.rmse = std::sqrt(s.squares_sum / n);
   s.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / n;
   s.median = 0.5 * (errors[(errors.size() - 1) / 2] + errors[errors.size() / 2]);
+  s.min = errors.front();
   s.max = errors.back();
+  double spread = 0;
+  for (const double error : errors) spread += (error - s.mean) * (error - s.mean);
+  s.deviation = std::sqrt(spread / n);
   return s;
 }
 

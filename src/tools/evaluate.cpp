@@ -3,7 +3,12 @@
 // loops are.
 #include "evaluate.hpp"
 
+#include <algorithm>
+#include <vector>
+
+#include "posefusion/evaluation/pose_comparison.hpp"
 #include "posefusion/io/run_folder.hpp"
+#include "posefusion/io/trajectory_format.hpp"
 #include "tool.hpp"
 
 namespace pf {
@@ -39,18 +44,43 @@ Option* addTrajectoryOptions(CommandLine& app, TrajectoryQuestion& question) {
   return estimate;
 }
 
-CommandLine* addRunCommand(CommandLine& app, RunQuestion& run) {
+CommandLine* addComparisonCommand(CommandLine& app, ComparisonQuestion& question) {
+  auto* command = app.addCommand(
+      "trajectory", "ATE and RPE of trajectory files as evo computes them; TUM, KITTI, EuRoC");
+  const auto word = oneOf(trajectoryFormats());
+  command->addOption("truth", question.truth, "true trajectory")->required();
+  command->addOption("estimate", question.estimate, "estimated trajectory")->required();
+  command->addOption("--truth-format", question.truth_format)->check(word);
+  command->addOption("--estimate-format", question.estimate_format)->check(word);
+  command->addOption("--align", question.align, "what is fitted before ATE is measured")
+      ->check(oneOf(alignments()));
+  command
+      ->addOption("--max-difference-s", question.max_difference_s, "between stamps that are a pair")
+      ->check(positive());
+  command->addOption("--offset-s", question.offset_s, "added to the stamps of the estimate");
+  command->addOption("--step", question.step, "RPE: length of the motions compared")
+      ->check(positive());
+  command->addOption("--step-unit", question.step_unit)->check(oneOf(stepUnits()));
+  command->addFlag("--overlapping", question.overlapping,
+                   "RPE: motions from every pose on, not end to end");
+  command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateComparison(question); });
+  return command;
+}
+
+CommandLine* addRunCommand(CommandLine& app, RunQuestion& question) {
   auto* command = app.addCommand("run", "the map of a run against its input");
-  command->addOption("run", run.run, "output folder of posefusion_run")
+  command->addOption("run", question.run, "output folder of posefusion_run")
       ->required()
       ->check(newest());
-  command->addOption("input", run.input, "TUM folder or bag it was made from")->required();
-  command->addOption("--truth", run.truth, "true trajectory, TUM format");
-  command->addOption("--camera", run.camera, "camera file, instead of the input's own");
-  command->addOption("--masks", run.masks, "true masks of people; default: INPUT/mask");
-  command->addOption("--first-frame", run.first_frame, "depth: first frame of the input");
-  command->addOption("--last-frame", run.last_frame, "depth: frame to stop before");
-  command->addFlag("--json", run.json, "print JSON");
+  command->addOption("input", question.input, "TUM folder or bag it was made from")->required();
+  command->addOption("--truth", question.truth, "true trajectory, TUM format");
+  command->addOption("--camera", question.camera, "camera file, instead of the input's own");
+  command->addOption("--masks", question.masks, "true masks of people; default: INPUT/mask");
+  command->addOption("--first-frame", question.first_frame, "depth: first frame of the input");
+  command->addOption("--last-frame", question.last_frame, "depth: frame to stop before");
+  command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateRun(question); });
   return command;
 }
 
@@ -64,6 +94,7 @@ CommandLine* addKnownCommand(CommandLine& app, KnownQuestion& question) {
   command->addOption("--status", question.status, "table of posefusion_run --save-status")
       ->required();
   command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateKnown(question); });
   return command;
 }
 
@@ -75,6 +106,7 @@ CommandLine* addMasksCommand(CommandLine& app, PairQuestion& question) {
       ->required()
       ->check(newest());
   command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateMasks(question.truth, question.checked, question.json); });
   return command;
 }
 
@@ -85,6 +117,8 @@ CommandLine* addCovarianceCommand(CommandLine& app, PairQuestion& question) {
   command->addOption("status", question.checked, "table of posefusion_run --save-status")
       ->required();
   command->addFlag("--json", question.json, "print JSON");
+  command->does(
+      [&question] { evaluateCovariance(question.truth, question.checked, question.json); });
   return command;
 }
 
@@ -97,6 +131,7 @@ CommandLine* addSurfaceCommand(CommandLine& app, PairQuestion& question) {
       ->check(newest());
   command->addOption("sequence", question.truth, "sequence with scene_points.ply")->required();
   command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateSurface(question.checked, question.truth, question.json); });
   return command;
 }
 
@@ -113,12 +148,29 @@ CommandLine* addMadeCommand(CommandLine& app, const char* name, const char* of, 
   return command;
 }
 
+CommandLine* addMeshCommand(CommandLine& app, SurfaceQuestion& question) {
+  auto* command = addMadeCommand(
+      app, "mesh", "*.ply of posefusion_map mesh",
+      "a mesh of a run's map against the true surface of a simulated room", question);
+  command->does([&question] { evaluateMesh(question); });
+  return command;
+}
+
+CommandLine* addGridCommand(CommandLine& app, SurfaceQuestion& question) {
+  auto* command =
+      addMadeCommand(app, "grid", "*.yaml of posefusion_map grid",
+                     "a grid of a run's map against the true plan of a simulated room", question);
+  command->does([&question] { evaluateGrid(question); });
+  return command;
+}
+
 CommandLine* addLoopsCommand(CommandLine& app, PairQuestion& question) {
   auto* command =
       app.addCommand("loops", "the loops that a map was corrected by against true poses");
   command->addOption("map", question.checked, "map file (map.pfdb)")->required();
   command->addOption("truth", question.truth, "sequence, or true trajectory")->required();
   command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateLoops(question.checked, question.truth, question.json); });
   return command;
 }
 
@@ -130,40 +182,24 @@ int main(int argc, char** argv) {
   CommandLine app{"Errors of an estimated trajectory by the definitions of the TUM benchmark.",
                   "posefusion_evaluate"};
   TrajectoryQuestion trajectory;
+  ComparisonQuestion comparison;
   RunQuestion run;
   KnownQuestion known;
   SurfaceQuestion mesh, grid;
   PairQuestion masks, covariance, surface, loops;
   const Option* estimate = addTrajectoryOptions(app, trajectory);
-  const CommandLine* run_command = addRunCommand(app, run);
-  const CommandLine* known_command = addKnownCommand(app, known);
-  const CommandLine* masks_command = addMasksCommand(app, masks);
-  const CommandLine* covariance_command = addCovarianceCommand(app, covariance);
-  const CommandLine* surface_command = addSurfaceCommand(app, surface);
-  const CommandLine* mesh_command =
-      addMadeCommand(app, "mesh", "*.ply of posefusion_map mesh",
-                     "a mesh of a run's map against the true surface of a simulated room", mesh);
-  const CommandLine* grid_command =
-      addMadeCommand(app, "grid", "*.yaml of posefusion_map grid",
-                     "a grid of a run's map against the true plan of a simulated room", grid);
-  const CommandLine* loops_command = addLoopsCommand(app, loops);
+  const std::vector<const CommandLine*> commands = {addComparisonCommand(app, comparison),
+                                                    addRunCommand(app, run),
+                                                    addKnownCommand(app, known),
+                                                    addMasksCommand(app, masks),
+                                                    addCovarianceCommand(app, covariance),
+                                                    addSurfaceCommand(app, surface),
+                                                    addMeshCommand(app, mesh),
+                                                    addGridCommand(app, grid),
+                                                    addLoopsCommand(app, loops)};
   return runTool(app, argc, argv, [&] {
-    if (*run_command) {
-      evaluateRun(run);
-    } else if (*known_command) {
-      evaluateKnown(known);
-    } else if (*masks_command) {
-      evaluateMasks(masks.truth, masks.checked, masks.json);
-    } else if (*covariance_command) {
-      evaluateCovariance(covariance.truth, covariance.checked, covariance.json);
-    } else if (*surface_command) {
-      evaluateSurface(surface.checked, surface.truth, surface.json);
-    } else if (*mesh_command) {
-      evaluateMesh(mesh);
-    } else if (*grid_command) {
-      evaluateGrid(grid);
-    } else if (*loops_command) {
-      evaluateLoops(loops.checked, loops.truth, loops.json);
+    if (std::any_of(commands.begin(), commands.end(), [](const auto* c) { return bool(*c); })) {
+      app.act();
     } else if (*estimate) {
       evaluateTrajectory(trajectory);
     } else {

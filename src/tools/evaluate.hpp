@@ -16,6 +16,19 @@ struct TrajectoryQuestion {
   bool json = false;
 };
 
+/// posefusion_evaluate trajectory TRUTH ESTIMATE
+struct ComparisonQuestion {
+  std::string truth, estimate;
+  std::string truth_format = "auto", estimate_format = "auto";
+  std::string align = "rigid";
+  double max_difference_s = 0.02;
+  double offset_s = 0;  ///< added to the stamps of the estimate
+  double step = 1;
+  std::string step_unit = "frames";
+  bool overlapping = false;
+  bool json = false;
+};
+
 /// posefusion_evaluate run RUN_DIR INPUT
 struct RunQuestion {
   std::string run, input;
@@ -42,6 +55,7 @@ struct SurfaceQuestion {
 
 /// Each prints its answer on stdout. They throw InputError.
 void evaluateTrajectory(const TrajectoryQuestion& question);
+void evaluateComparison(const ComparisonQuestion& question);
 void evaluateRun(const RunQuestion& question);
 void evaluateKnown(const KnownQuestion& question);
 void evaluateMesh(const SurfaceQuestion& question);

@@ -15,7 +15,9 @@ namespace pf {
 
 struct ErrorStatistics {
   std::size_t count = 0;
-  double rmse = 0, mean = 0, median = 0, max = 0;
+  double rmse = 0, mean = 0, median = 0, max = 0, min = 0;
+  double deviation = 0;    ///< from the mean, over all of them (not n - 1)
+  double squares_sum = 0;  ///< of the errors themselves
 };
 
 /// Statistics of errors; all 0 of none.
