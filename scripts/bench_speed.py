@@ -36,7 +36,7 @@ class Speed(Runs):
         theirs, ours, ratios, gains = [], [], [], []
         for i in range(self.options.repeats):
             note("running RgbdICPOdometry")
-            theirs.append(json.loads(call(PROGRAMS / "posefusion_rgbd_yardstick", data)))
+            theirs.append(json.loads(call(PROGRAMS / "posefusion_baseline", data)))
             ours.append(self.run(f"yardstick_{i}", data, *self.network_arguments(), *LOOKS_AS_BEFORE)[1])
             median_ms = ours[-1]["stages"]["tracking_and_fusion"]["median_ms"]
             ratios.append(median_ms / theirs[-1]["median_ms"])
