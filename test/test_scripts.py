@@ -9,12 +9,12 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SOURCES = ("include", "src", "test", "scripts", "examples", "cmake", ".ci")
+SOURCES = ("include", "src", "test", "scripts", "examples", "python", "cmake", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
           "mesh", "grid",
-          "loop", "slam", "io", "evaluation", "run", "simulator", "ros", "openni2",
+          "loop", "slam", "io", "evaluation", "run", "python", "simulator", "ros", "openni2",
           "nodelets", "tools", "viewer")
 FORMATTER = "version 14."  # of clang-format: others lay out some lines differently
 
