@@ -10,6 +10,7 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/images.hpp"
+#include "posefusion/io/known_cameras.hpp"
 #include "posefusion/io/people_json.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 
@@ -158,14 +159,25 @@ class TumFolder : public FrameSource {
  private:
   void readCamera(const std::string& camera_file) {
     const fs::path path = camera_file.empty() ? folder_ / "camera.yaml" : fs::path(camera_file);
+    const auto known = knownCamera(folder_.string());
+    if (camera_file.empty() && !fs::exists(path) && known) {
+      take(known->file, known->recorded_by);
+      report_.notes.push_back("there is no camera.yaml: the camera is that of " +
+                              known->recorded_by + ", by the folder's name");
+      return;
+    }
     if (!fs::exists(path)) {
       throw InputError(path.string() +
                        ": is missing, expected the camera (width height fx fy cx cy "
                        "depth_factor); another file can be given by --camera");
     }
-    const CameraFile file = loadCamera(path);
+    take(loadCamera(path), path.string());
+  }
+
+  /// `origin`: for people.
+  void take(const CameraFile& file, const std::string& origin) {
     if (!file.depth_factor) {
-      throw InputError(path.string() +
+      throw InputError(origin +
                        ": depth_factor is missing, expected steps of the depth in a "
                        "metre (1000 for millimetres, 5000 for the TUM benchmark)");
     }

@@ -52,7 +52,8 @@ class FrameSource {
 };
 
 /// Opens a TUM folder: associations.txt, or rgb.txt and depth.txt matched by nearest stamp (less
-/// than 20 ms apart); the camera from camera.yaml, or from `camera_file` when that is not empty.
+/// than 20 ms apart); the camera from `camera_file` when that is not empty, else from camera.yaml,
+/// else by the folder's name (knownCamera()).
 /// Frames come in the order of the lists; one whose stamp is not later than all before it comes
 /// with a defect. People from people.json, truth from groundtruth.txt. Throws InputError naming
 /// what is missing.
