@@ -223,7 +223,7 @@ class Repository(unittest.TestCase):
         self.assertEqual(dead, [])
 
     def test_options_in_readme_exist(self):
-        known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench"))
+        known = "".join((ROOT / "scripts" / script).read_text() for script in ("test", "bench", "report"))
         for program in ("run", "evaluate", "simulate", "calibrate"):
             path = pathlib.Path(os.environ["POSEFUSION_PROGRAMS"]) / f"posefusion_{program}"
             known += subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, text=True).stdout

@@ -60,6 +60,12 @@ void evaluateComparison(const ComparisonQuestion& question) {
     nlohmann::ordered_json out;
     out["align"] = question.align;
     out["scale"] = alignment.scale;
+    for (int row = 0; row < 3; ++row) {
+      const Eigen::Vector3d axis = alignment.rotation.row(row);
+      out["rotation"].push_back({axis.x(), axis.y(), axis.z()});
+    }
+    const Eigen::Vector3d& shift = alignment.translation;
+    out["translation_m"] = {shift.x(), shift.y(), shift.z()};
     out["ate_m"] = toJson(absolute.translation_m);
     out["ate_deg"] = toJson(absolute.rotation_deg);
     out["rpe_m"] = toJson(relative.translation_m);
