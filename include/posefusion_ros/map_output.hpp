@@ -36,8 +36,10 @@ class MapOutput {
                                       const std::optional<Eigen::Isometry3d>& T_map_start,
                                       std::size_t max_points) const;
 
-  /// The view as it is after the frame of `stamp`. `reset`: the map was emptied on request.
-  void publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset);
+  /// The view as it is after the frame of `stamp`. `T_map_start`: the core's map in the map frame,
+  /// if that is known. `reset`: the map was emptied on request.
+  void publishView(const pf::ModelView& view, const ros::Time& stamp,
+                   const std::optional<Eigen::Isometry3d>& T_map_start, bool reset);
 
   /// The next surfels go out at once.
   void reset() { surfels_sent_ = ros::Time(); }

@@ -6,6 +6,8 @@
 #include <posefusion/Keypoint.h>
 #include <posefusion/LoopConstraint.h>
 #include <posefusion/ModelView.h>
+#include <posefusion/MovingObject.h>
+#include <posefusion/MovingObjects.h>
 #include <posefusion/People.h>
 #include <posefusion/Person.h>
 #include <posefusion/SparseFlow.h>
@@ -19,6 +21,8 @@ using KeyframeMsg = posefusion::Keyframe;
 using KeypointMsg = posefusion::Keypoint;
 using LoopConstraintMsg = posefusion::LoopConstraint;
 using ModelViewMsg = posefusion::ModelView;
+using MovingObjectMsg = posefusion::MovingObject;
+using MovingObjectsMsg = posefusion::MovingObjects;
 using PeopleMsg = posefusion::People;
 using PersonMsg = posefusion::Person;
 using SparseFlowMsg = posefusion::SparseFlow;

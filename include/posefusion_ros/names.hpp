@@ -24,6 +24,8 @@ constexpr char kInMapMask[] = "in_map_mask";
 constexpr char kStaticDepth[] = "static_depth";
 constexpr char kFlow[] = "flow";
 constexpr char kPeopleUsed[] = "people_used";
+constexpr char kMovingObjects[] = "moving_objects";
+constexpr char kMovingObjectMarkers[] = "moving_object_markers";
 constexpr char kSkeletons[] = "skeletons";
 constexpr char kPeopleImage[] = "people_image";
 // Fusion.

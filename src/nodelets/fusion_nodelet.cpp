@@ -150,7 +150,11 @@ class FusionNodelet : public ChainNodelet {
       }
     });
     last_ = header.stamp;
-    map_output_->publishView(session_->mapper().view(), last_, false);  // the segmenter may wait
+    publishView(false);  // the segmenter may wait
+  }
+
+  void publishView(bool reset) {
+    map_output_->publishView(session_->mapper().view(), last_, pose_output_->mapFromStart(), reset);
   }
 
   void fuse(const Set& set) {
@@ -239,7 +243,7 @@ class FusionNodelet : public ChainNodelet {
   /// Another map, on request.
   void showAnother() {
     beginOutput();
-    map_output_->publishView(session_->mapper().view(), last_, true);
+    publishView(true);
   }
 
   std::string map_frame_;

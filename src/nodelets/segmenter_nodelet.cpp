@@ -12,6 +12,7 @@
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/model_view.hpp"
+#include "posefusion_ros/moving_object_messages.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/running_settings.hpp"
 #include "posefusion_ros/settings_server.hpp"
@@ -86,6 +87,9 @@ class SegmenterNodelet : public ChainNodelet {
     ros::NodeHandle& handle = getNodeHandle();
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
     used_publisher_ = handle.advertise<PeopleMsg>(topics::kPeopleUsed, kInternalQueue);
+    moving_publisher_ = handle.advertise<MovingObjectsMsg>(topics::kMovingObjects, kInternalQueue);
+    moving_marker_publisher_ =
+        handle.advertise<visualization_msgs::MarkerArray>(topics::kMovingObjectMarkers, 2);
     marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>(topics::kSkeletons, 2);
     picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
     depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
@@ -99,13 +103,18 @@ class SegmenterNodelet : public ChainNodelet {
     if (view->reset != 0) clearMarkers();
   }
 
-  /// Takes all skeletons away. False where no viewer listens.
+  /// Takes all skeletons and boxes away. False where no viewer listens.
   bool clearMarkers() {
     const std::lock_guard<std::mutex> lock(publisher_mutex_);
-    if (!marker_publisher_ || marker_publisher_.getNumSubscribers() == 0) return false;
+    const bool of_people = clear(marker_publisher_, shown_frame_);
+    return clear(moving_marker_publisher_, map_frame_) || of_people;
+  }
+
+  static bool clear(const ros::Publisher& publisher, const std::string& frame) {
+    if (!publisher || publisher.getNumSubscribers() == 0) return false;
     std_msgs::Header header;
-    header.frame_id = shown_frame_;
-    marker_publisher_.publish(noMarkers(header));
+    header.frame_id = frame;
+    publisher.publish(noMarkers(header));
     return true;
   }
 
@@ -138,6 +147,23 @@ class SegmenterNodelet : public ChainNodelet {
         frame, flow_, fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
     publish(frame, result, flow, depth, header);
+    if (model.T_world_map && model.fragment == pf::kFirstFragment) {
+      publishMoving(result.moving, header.stamp, view->map_frame);
+    }
+  }
+
+  /// Nothing is said while the camera's place in the map frame is not known.
+  void publishMoving(const std::vector<pf::MovingObject>& moving, const ros::Time& stamp,
+                     const std::string& map_frame) {
+    const std::lock_guard<std::mutex> lock(publisher_mutex_);
+    if (!moving_publisher_) return;
+    std_msgs::Header header;
+    header.stamp = stamp;
+    header.frame_id = map_frame_ = map_frame;
+    moving_publisher_.publish(
+        boost::make_shared<const MovingObjectsMsg>(toMessage(moving, header)));
+    if (moving_marker_publisher_.getNumSubscribers() == 0) return;
+    moving_marker_publisher_.publish(toMarkers(moving, header));
   }
 
   /// Lossless: the view after the frame before this one, however long it takes.
@@ -206,10 +232,10 @@ class SegmenterNodelet : public ChainNodelet {
   pf::FlowTracker flow_;
   ros::Time last_;  // the frame before; zero at the start
   Background background_;
-  std::mutex publisher_mutex_;  // guards the publishers, which are advertised late
-  std::string shown_frame_;     // of the markers
-  ros::Publisher used_publisher_, marker_publisher_, picture_publisher_, depth_publisher_,
-      flow_publisher_, in_map_publisher_, mask_publisher_;
+  std::mutex publisher_mutex_;           // guards the publishers, which are advertised late
+  std::string shown_frame_, map_frame_;  // of the skeletons, of the boxes
+  ros::Publisher used_publisher_, moving_publisher_, moving_marker_publisher_, marker_publisher_,
+      picture_publisher_, depth_publisher_, flow_publisher_, in_map_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.

@@ -39,10 +39,14 @@ sensor_msgs::PointCloud2::Ptr MapOutput::cloud(const pf::SurfelMap& map, const r
   return cloud;
 }
 
-void MapOutput::publishView(const pf::ModelView& view, const ros::Time& stamp, bool reset) {
+void MapOutput::publishView(const pf::ModelView& view, const ros::Time& stamp,
+                            const std::optional<Eigen::Isometry3d>& T_map_start, bool reset) {
   std_msgs::Header header;
   header.stamp = stamp;
-  const ModelViewMsg::Ptr message = toMessage(view, header);
+  pf::ModelView placed = view;
+  placed.T_world_map = T_map_start;
+  const ModelViewMsg::Ptr message = toMessage(placed, header);
+  message->map_frame = map_frame_;
   message->reset = static_cast<unsigned char>(reset);
   view_publisher_.publish(ModelViewMsg::ConstPtr(message));
 }

@@ -41,6 +41,10 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
   message->camera = toCameraInfo(view.camera, header);
   message->fragment = static_cast<std::uint32_t>(view.fragment);
   Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
+  if (view.T_world_map) {
+    Eigen::Map<RowMajor34>(message->frame_from_map.data()) =
+        view.T_world_map->matrix().topRows<3>();
+  }
   copyPlane(view.depth_m, header, message->depth);
   copyPlane(view.stable, header, message->stable);
   return message;
@@ -54,6 +58,11 @@ pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
   view.fragment = static_cast<int>(message->fragment);
   view.T_map_camera.matrix().topRows<3>() =
       Eigen::Map<const RowMajor34>(message->map_from_camera.data());
+  const Eigen::Map<const RowMajor34> frame_from_map(message->frame_from_map.data());
+  if (!frame_from_map.isZero(0)) {
+    view.T_world_map = Eigen::Isometry3d::Identity();
+    view.T_world_map->matrix().topRows<3>() = frame_from_map;
+  }
   view.depth_m = planeOf(message->depth, message, TYPE_32FC1);
   view.stable = planeOf(message->stable, message, TYPE_8UC1);
   return view;

@@ -27,7 +27,6 @@ constexpr double kKnownPart = 0.2;
 constexpr double kMostOdds = 15.0;
 constexpr double kUnseen_s = 0.5;       // until an object that is not found is given up
 constexpr float kCarriedOff_m = 0.15F;  // of an object's depth from where it was expected
-constexpr double kVelocityMemory_s = 0.3;
 constexpr float kEdgeSigmas = 3.0F;
 constexpr float kEdgeSlope = 2.0F;  // depth per distance across, of neighbours on one surface
 
@@ -41,6 +40,17 @@ struct MovingObjects::Piece {
   std::array<int, SeenBefore::kAges_s.size()> was_free{}, was_there{};
   std::vector<int> votes;  ///< cells that each object was expected in
 };
+
+/// An object from frame to frame.
+struct MovingObjects::Followed {
+  MovingObject object;
+  double odds = 0;         ///< for moving, in frames (at 30 Hz) of evidence; given up at 0
+  double unseen_s = 0;     ///< since it was last found
+  std::vector<int> cells;  ///< of the grid, in the newest frame
+};
+
+MovingObjects::MovingObjects(const DepthSensor& sensor) : sensor_(sensor) {}
+MovingObjects::~MovingObjects() = default;
 
 void MovingObjects::reset() {
   before_.reset();
@@ -70,8 +80,8 @@ void MovingObjects::carryObjects(const MovingScene& scene) {
   const Eigen::Isometry3d T_camera_map = scene.T_map_camera.inverse();
   carried_.assign(grid.size(), -1);
   for (std::size_t k = 0; k < objects_.size(); ++k) {
-    const Eigen::Vector3d shift = objects_[k].velocity_m_s * elapsed_s;
-    for (const Eigen::Vector3f& point : objects_[k].points_m) {
+    const Eigen::Vector3d shift = objects_[k].object.velocity_m_s * elapsed_s;
+    for (const Eigen::Vector3f& point : objects_[k].object.points_m) {
       const Eigen::Vector3d p = T_camera_map * (point.cast<double>() + shift);
       if (p.z() <= 0) continue;
       const Eigen::Vector2d pixel = camera.project(p);
@@ -160,23 +170,14 @@ double MovingObjects::evidenceOf(const Piece& piece) const {
 
 /// The object is where the piece is.
 void MovingObjects::place(const MovingScene& scene, double elapsed_s, Piece& piece,
-                          MovingObject& object) {
-  const bool is_new = object.cells.empty();
-  const Eigen::Vector3d before_m = object.centre_m;
+                          Followed& object) {
   object.cells = std::move(piece.cells);
-  object.points_m.clear();
-  object.box_m.setEmpty();
-  object.centre_m.setZero();
+  std::vector<Eigen::Vector3f> points_m;
   for (const int cell : object.cells) {
     const Eigen::Vector3d p = scene.T_map_camera * scene.grid.point(cell).cast<double>();
-    object.points_m.emplace_back(p.cast<float>());
-    object.box_m.extend(p);
-    object.centre_m += p;
+    points_m.emplace_back(p.cast<float>());
   }
-  object.centre_m /= static_cast<double>(object.cells.size());
-  if (is_new || elapsed_s <= 0) return;
-  const double share = std::min(1.0, elapsed_s / kVelocityMemory_s);
-  object.velocity_m_s += share * ((object.centre_m - before_m) / elapsed_s - object.velocity_m_s);
+  object.object.placeAt(std::move(points_m), elapsed_s);
 }
 
 /// Each object goes on in the largest piece that lies where it was expected; what is left is new
@@ -184,7 +185,7 @@ void MovingObjects::place(const MovingScene& scene, double elapsed_s, Piece& pie
 void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces, double elapsed_s) {
   std::vector<bool> is_taken(pieces.size(), false);
   for (std::size_t k = 0; k < objects_.size(); ++k) {
-    MovingObject& object = objects_[k];
+    Followed& object = objects_[k];
     object.unseen_s += elapsed_s;
     int best = -1;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -200,20 +201,20 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
     object.odds = std::min(kMostOdds, object.odds + scene.worth * evidenceOf(pieces[best]));
     place(scene, elapsed_s, pieces[best], object);
   }
-  const auto isOver = [](const MovingObject& o) { return o.odds <= 0 || o.unseen_s > kUnseen_s; };
+  const auto isOver = [](const Followed& o) { return o.odds <= 0 || o.unseen_s > kUnseen_s; };
   objects_.erase(std::remove_if(objects_.begin(), objects_.end(), isOver), objects_.end());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double evidence = evidenceOf(pieces[i]);
     if (is_taken[i] || pieces[i].seeds < kLeastSeeds || evidence <= 0) continue;
-    MovingObject object;
-    object.id = ++last_id_;
+    Followed object;
+    object.object.id = ++last_id_;
     object.odds = scene.worth * evidence;
     place(scene, 0, pieces[i], object);
     objects_.push_back(std::move(object));
   }
 }
 
-const std::vector<MovingObject>& MovingObjects::find(const MovingScene& scene) {
+std::vector<MovingObject> MovingObjects::find(const MovingScene& scene) {
   before_.know(scene.view);
   before_.compare(scene.grid, scene.T_map_camera, scene.stamp_ns, sensor_);
   const double elapsed_s = std::max(0.0, secondsBetween(last_ns_, scene.stamp_ns));
@@ -222,12 +223,14 @@ const std::vector<MovingObject>& MovingObjects::find(const MovingScene& scene) {
   std::vector<Piece> pieces = grow(scene);
   follow(scene, pieces, elapsed_s);
   labels_.assign(scene.grid.size(), 0);
-  for (const MovingObject& object : objects_) {
-    for (const int cell : object.cells) labels_[cell] = 1;
+  std::vector<MovingObject> found;
+  for (const Followed& followed : objects_) {
+    for (const int cell : followed.cells) labels_[cell] = 1;
+    if (!followed.cells.empty()) found.push_back(followed.object);
   }
   before_.add(scene.grid, scene.camera, scene.stamp_ns);
   last_ns_ = scene.stamp_ns;
-  return objects_;
+  return found;
 }
 
 }  // namespace pf

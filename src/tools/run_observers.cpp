@@ -14,7 +14,8 @@ constexpr int kFirstFrame = 50;
 
 }  // namespace
 
-MaskWriter::MaskWriter(const std::string& folder) : folder_(folder) {
+MaskWriter::MaskWriter(const std::string& folder)
+    : folder_(folder), objects_(folder + "/moving_objects.json") {
   makeFolder(folder + "/mask");
 }
 
@@ -23,10 +24,14 @@ void MaskWriter::add(const ProcessedFrame& frame) {
   cv::Mat mask = frame.segmentation.mask;
   if (mask.empty()) mask = cv::Mat::zeros(input.camera.height, input.camera.width, CV_8UC1);
   savePng(folder_ + "/mask/" + formatStamp(input.stamp_ns) + ".png", mask);
+  objects_.add(input.stamp_ns, frame.segmentation.moving);
   if (frame.seen.people.detected) people_.push_back(frame.seen.people);
 }
 
-void MaskWriter::finish() const { savePeople(folder_ + "/people.json", people_); }
+void MaskWriter::finish() {
+  savePeople(folder_ + "/people.json", people_);
+  objects_.finish();
+}
 
 void StatusWriter::add(const ProcessedFrame& frame) {
   const FrameStatus& status = frame.status;
@@ -66,7 +71,7 @@ void RunObservers::add(const ProcessedFrame& frame) {
   if (depth_) depth_->add(frame);
 }
 
-void RunObservers::finish(RunReport& report) const {
+void RunObservers::finish(RunReport& report) {
   if (masks_) masks_->finish();
   if (status_) status_->finish();
   if (depth_) report.setDepthCheck(depth_->check());

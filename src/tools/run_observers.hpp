@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "posefusion/evaluation/map_check.hpp"
+#include "posefusion/io/moving_objects_file.hpp"
 #include "posefusion/io/status_file.hpp"
 #include "posefusion/run/run_report.hpp"
 #include "posefusion/slam/pipeline.hpp"
@@ -14,18 +15,19 @@
 
 namespace pf {
 
-/// Writes mask/ (a PNG per frame, named by its stamp, 255 = person) and people.json, the people as
-/// the detector found them.
+/// Writes mask/ (a PNG per frame, named by its stamp, 255 = a person or a moving object),
+/// people.json, the people as the detector found them, and moving_objects.json.
 class MaskWriter {
  public:
   explicit MaskWriter(const std::string& folder);
 
   void add(const ProcessedFrame& frame);
-  void finish() const;
+  void finish();
 
  private:
   std::string folder_;
   std::vector<People> people_;
+  MovingObjectsFile objects_;
 };
 
 /// Keeps what became of each frame, for --save-status.
@@ -62,7 +64,7 @@ class RunObservers {
 
   void add(const ProcessedFrame& frame);
   /// Writes the files and tells the report what was found.
-  void finish(RunReport& report) const;
+  void finish(RunReport& report);
 
  private:
   std::optional<MaskWriter> masks_;

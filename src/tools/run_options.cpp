@@ -95,7 +95,8 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
       ->excludes(localize);
   localize->needs(map);
   addTopicOptions(app, reading);
-  app.addFlag("--save-masks", options.save_masks, "write mask/ and people.json");
+  app.addFlag("--save-masks", options.save_masks,
+              "write mask/, people.json and moving_objects.json");
   app.addOption("--save-status", options.status_file,
                 "CSV to write: state, reason, pose and covariance of each frame");
   app.addOption("--mesh", options.mesh_file,

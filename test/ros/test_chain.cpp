@@ -90,21 +90,47 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBitWithADetectorsMaskToo) {
   chain.set("pose/detector", std::string("embedded"));
   chain.set("pose/embedded_model", model);
   chain.set("output", folder.str());
+  std::mutex mutex;
+  std::map<ros::Time, MovingObjectsMsg> told;
+  const boost::function<void(const MovingObjectsMsg::ConstPtr&)> note =
+      [&](const MovingObjectsMsg::ConstPtr& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        told[message->header.stamp] = *message;
+      };
+  const auto subscriber =
+      chain.handle().subscribe<MovingObjectsMsg>(topics::kMovingObjects, 100, note);
   ASSERT_TRUE(chain.load());
   pf::Config config;
   config.pose.detector = "embedded";
   config.pose.embedded_model = model;
   pf::Pipeline pipeline(config, makePoseDetector(config.pose, {}));
   int masked = 0;
+  std::map<ros::Time, std::vector<pf::MovingObject>> moving;
   for (int i = 0; i < sequence.frameCount(); ++i) {
     const pf::RgbdFrame frame = sequence.frame(i).frame;
     const pf::ProcessedFrame processed = pipeline.process(frame);
     EXPECT_FALSE(processed.seen.people.mask.empty());
     masked += processed.segmentation.mask.empty() ? 0 : 1;
+    if (i > 0) moving[toTime(frame.stamp_ns)] = processed.segmentation.moving;
     EXPECT_EQ(outcome(chain.process(toMessages(frame))),
               static_cast<int>(processed.status.outcome));
   }
   EXPECT_GT(masked, 0);
+  EXPECT_TRUE(Chain::waitUntil([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return told.size() >= moving.size();
+  })) << told.size();
+  for (const auto& [stamp, objects] : moving) {
+    const MovingObjectsMsg& message = told[stamp];
+    EXPECT_EQ(message.header.frame_id, "map");
+    ASSERT_EQ(message.objects.size(), objects.size()) << stamp;
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      EXPECT_EQ(message.objects[k].id, objects[k].id);
+      EXPECT_NEAR(message.objects[k].centre.x, objects[k].centre_m.x(), 1e-6);
+      EXPECT_NEAR(message.objects[k].centre.z, objects[k].centre_m.z(), 1e-6);
+    }
+  }
+  EXPECT_FALSE(moving.rbegin()->second.empty());
   ASSERT_TRUE(chain.call("save_map").success);
   saveMap(folder / "expected.ply", pipeline.mapper().map());
   EXPECT_EQ(pf::readFile(folder / "latest/map.ply"), pf::readFile(folder / "expected.ply"));

@@ -141,6 +141,11 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   EXPECT_TRUE(read.camera == view.camera);
   EXPECT_EQ(read.fragment, 2);
   EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
+  EXPECT_FALSE(read.T_world_map) << "not known yet";
+  view.T_world_map = Eigen::Translation3d(1, 2, 3) * Eigen::Isometry3d::Identity();
+  const pf::ModelView placed = fromMessage(toMessage(view, std_msgs::Header()));
+  ASSERT_TRUE(placed.T_world_map);
+  EXPECT_TRUE(placed.T_world_map->matrix() == view.T_world_map->matrix());
   for (const auto plane : {&pf::ModelView::depth_m, &pf::ModelView::stable}) {
     EXPECT_TRUE(same(read.*plane, view.*plane));
   }

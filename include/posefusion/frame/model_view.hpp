@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/map_pose.hpp"
@@ -16,6 +17,8 @@ struct ModelView {
   PinholeCamera camera;
   int fragment = kFirstFragment;  ///< of the map, that is seen
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  /// From the map's coordinates to the frame of those who use it, as far as known.
+  std::optional<Eigen::Isometry3d> T_world_map{};
   cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing
   cv::Mat normal_x;   ///< CV_32FC1, camera frame, unit length, towards the camera
   cv::Mat normal_y;   ///< CV_32FC1

@@ -5,22 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "posefusion/segmentation/moving_object.hpp"
 #include "posefusion/segmentation/seen_before.hpp"
 
 namespace pf {
-
-/// Something that moves, whatever it is: a person who was not detected, a chair that is pushed, a
-/// door. In the frame of the map.
-struct MovingObject {
-  int id = 0;                                          ///< from 1 on, the same over frames
-  Eigen::AlignedBox3d box_m;                           ///< of what is seen of it
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< mean of what is seen of it
-  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
-  double odds = 0;         ///< for moving, in frames (at 30 Hz) of evidence; masked above 0
-  double unseen_s = 0;     ///< since it was last found
-  std::vector<int> cells;  ///< of the grid, in the newest frame
-  std::vector<Eigen::Vector3f> points_m;  ///< of the cells
-};
 
 /// What is known of a frame when its moving objects are looked for.
 struct MovingScene {
@@ -41,10 +29,11 @@ struct MovingScene {
 /// and Agapito 2017). Not thread safe.
 class MovingObjects {
  public:
-  explicit MovingObjects(const DepthSensor& sensor) : sensor_(sensor) {}
+  explicit MovingObjects(const DepthSensor& sensor);
+  ~MovingObjects();
 
   /// The objects seen in the frame, those at rest for a moment among them.
-  const std::vector<MovingObject>& find(const MovingScene& scene);
+  std::vector<MovingObject> find(const MovingScene& scene);
 
   /// 1 = a cell of an object that moves, as of the last find().
   const std::vector<std::uint8_t>& labels() const { return labels_; }
@@ -54,6 +43,7 @@ class MovingObjects {
 
  private:
   struct Piece;
+  struct Followed;
   void findSeeds(const MovingScene& scene);
   void carryObjects(const MovingScene& scene);
   bool isOfMoving(const MovingScene& scene, int cell) const;
@@ -61,11 +51,11 @@ class MovingObjects {
   Piece growFrom(const MovingScene& scene, int first);
   double evidenceOf(const Piece& piece) const;
   void follow(const MovingScene& scene, std::vector<Piece>& pieces, double elapsed_s);
-  static void place(const MovingScene& scene, double elapsed_s, Piece& piece, MovingObject& object);
+  static void place(const MovingScene& scene, double elapsed_s, Piece& piece, Followed& object);
 
   DepthSensor sensor_;
   SeenBefore before_;
-  std::vector<MovingObject> objects_;
+  std::vector<Followed> objects_;
   std::vector<std::uint8_t> labels_;
   std::vector<std::uint8_t> seeds_;     // 1: the place was empty a moment ago
   std::vector<std::int16_t> carried_;   // object that the cell should be of, -1: none

@@ -12,7 +12,7 @@
 #include "posefusion/frame/model_view.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/segmentation/config.hpp"
-#include "posefusion/segmentation/moving_objects.hpp"
+#include "posefusion/segmentation/moving_object.hpp"
 
 namespace pf {
 
@@ -29,7 +29,9 @@ struct Segmentation {
   cv::Mat static_depth;  ///< depth of the frame, the mask removed (0 or NaN); the very same pixels
                          ///< as the input when there is none
   People people;         ///< as used: detected, or carried forward to this frame
-  std::vector<MovingObject> objects;  ///< in the map, beside the people; those just at rest too
+  std::vector<MovingObject> moving;  ///< people and other moving objects that are seen, in the
+                                     ///< frame that ModelView::T_world_map leads to; none while the
+                                     ///< camera's place in it is not known
 };
 
 /// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried
@@ -59,8 +61,11 @@ class PeopleSegmenter {
  private:
   struct State;
   bool findPeople(const RgbdFrame& frame, const FlowTracker& flow, const People& people);
+  void keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result);
   void findObjects(const RgbdFrame& frame, const ModelView* view,
-                   const Eigen::Isometry3d& T_view_camera, std::vector<std::uint8_t>& taken,
+                   const Eigen::Isometry3d& T_map_camera, std::vector<std::uint8_t>& taken,
+                   Segmentation& result);
+  void placePeople(const ModelView* view, const Eigen::Isometry3d& T_map_camera,
                    Segmentation& result);
   Segmentation segmentAsThePaper(const RgbdFrame& frame, const People& people,
                                  const std::optional<Eigen::Vector3d>& up_camera);
