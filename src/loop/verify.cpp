@@ -16,74 +16,8 @@ constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.06;
 // Of two places that look alike one is believed by odds of 150 to 1: so much more chi-square.
 constexpr double kTellsApart = 10.0;
-constexpr float kAgreeingSigmas = 4.0F;
-constexpr float kMinNormalCosine = 0.7F;
-// Grey levels are compared in windows of so many pixels: light and exposure change slowly.
-constexpr int kWindow = 16;
-constexpr double kLeastPixels = 0.3;     // of a window
-constexpr double kLeastVariance = 40.0;  // of grey levels: less texture tells nothing
 // Nothing is known before: a prior as wide as the gates.
 constexpr double kPriorShift_m = 0.3, kPriorTurn_rad = 0.3;
-
-/// Sums over a window, for the correlation.
-struct GreySums {
-  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-
-  void add(double x, double y) { n += 1, a += x, b += y, aa += x * x, bb += y * y, ab += x * y; }
-};
-
-/// The windows' correlations, weighted by their texture; 0 where there is none.
-double correlationOf(const std::vector<GreySums>& windows) {
-  double both = 0, texture = 0;
-  for (const GreySums& w : windows) {
-    if (w.n < kLeastPixels * kWindow * kWindow) continue;
-    const double va = w.aa / w.n - w.a * w.a / (w.n * w.n);
-    const double vb = w.bb / w.n - w.b * w.b / (w.n * w.n);
-    if (std::max(va, vb) < kLeastVariance) continue;
-    const double root = std::sqrt(std::max(0.0, va * vb));
-    both += w.ab / w.n - w.a * w.b / (w.n * w.n);
-    texture += std::max(root, 0.5 * std::max(va, vb));
-  }
-  return texture > 0 ? both / texture : 0.0;
-}
-
-/// Pixels, and the sum of the outer products of the normals of those that agree.
-struct Counts {
-  double valid = 0, known = 0, agreeing = 0, through = 0, hidden = 0;
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-};
-
-/// One row; `windows` are those that it crosses.
-void compareRow(const WorkingFrame& frame, const ModelView& view, int v, GreySums* windows,
-                Counts& counts) {
-  const FrameLevel& level = frame.levels[0];
-  const DepthSensor sensor = frame.sensor;
-  const auto *seen = level.depth_m.ptr<float>(v), *model = view.depth_m.ptr<float>(v);
-  const auto *ax = level.normal_x.ptr<float>(v), *ay = level.normal_y.ptr<float>(v);
-  const auto *az = level.normal_z.ptr<float>(v), *bx = view.normal_x.ptr<float>(v);
-  const auto *by = view.normal_y.ptr<float>(v), *bz = view.normal_z.ptr<float>(v);
-  const auto *grey = level.intensity.ptr<float>(v), *mapped = view.intensity.ptr<float>(v);
-  const auto* still = level.still.ptr<std::uint8_t>(v);
-  Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();
-  for (int u = 0; u < level.depth_m.cols; ++u) {
-    if (seen[u] <= 0) continue;
-    ++counts.valid;
-    if (model[u] <= 0) continue;
-    ++counts.known;
-    const float nz = std::min(-0.2F, bz[u]);
-    const float tolerance = sensor.tolerance(std::max(seen[u], model[u]), kAgreeingSigmas) / -nz;
-    if (seen[u] > model[u] + tolerance) ++counts.through;
-    if (seen[u] < model[u] - tolerance) ++counts.hidden;
-    if (std::abs(seen[u] - model[u]) > tolerance) continue;
-    const float cosine = ax[u] * bx[u] + ay[u] * by[u] + az[u] * bz[u];
-    if (az[u] < 0 && cosine < kMinNormalCosine) continue;
-    ++counts.agreeing;
-    const Eigen::Vector3f n(bx[u], by[u], bz[u]);
-    normals += n * n.transpose();
-    if (still[u] != 0) windows[u / kWindow].add(grey[u], mapped[u]);
-  }
-  counts.normals += normals.cast<double>();
-}
 
 bool isSamePlace(const PlaceVerdict& a, const PlaceVerdict& b) {
   const Eigen::Isometry3d step = a.alignment.T_map_camera.inverse() * b.alignment.T_map_camera;
@@ -112,28 +46,6 @@ std::string_view name(PlaceDoubt doubt) {
       "none",       "covered",   "little_overlap", "not_converged", "degenerate",
       "moved_away", "disagrees", "seen_through",   "other_picture", "ambiguous"};
   return kNames.at(static_cast<std::size_t>(doubt));
-}
-
-PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
-  const FrameLevel& level = frame.levels[0];
-  const int across = (level.depth_m.cols + kWindow - 1) / kWindow;
-  const int down = (level.depth_m.rows + kWindow - 1) / kWindow;
-  std::vector<GreySums> windows(static_cast<std::size_t>(across * down));
-  Counts counts;
-  for (int v = 0; v < level.depth_m.rows; ++v) {
-    compareRow(frame, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
-  }
-  PlaceAgreement result;
-  result.view = counts.valid / static_cast<double>(level.depth_m.total());
-  result.overlap = counts.known / std::max(1.0, counts.valid);
-  result.agreeing = counts.agreeing / std::max(1.0, counts.known);
-  result.seen_through = counts.through / std::max(1.0, counts.known);
-  result.hidden = counts.hidden / std::max(1.0, counts.known);
-  result.correlation = correlationOf(windows);
-  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(counts.normals /
-                                                                 std::max(1.0, counts.agreeing))
-                      .eigenvalues()[0];
-  return result;
 }
 
 TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
