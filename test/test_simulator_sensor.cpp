@@ -127,7 +127,7 @@ TEST(SimulatorDepth, WithoutNoiseDepthIsExact) {
 TEST(SimulatorDepth, MisregistrationMovesDepthAndMaskBesideTheColour) {
   DepthView view = wall(3.0F);
   view.depth_m(cv::Rect(300, 100, 100, 200)) = 1.5F;
-  view.person(cv::Rect(300, 100, 100, 200)) = 2;
+  view.label(cv::Rect(300, 100, 100, 200)) = 2;
   DepthConfig config;
   config.noise = false;
   cv::Mat depth, mask, moved_depth, moved_mask;

@@ -17,6 +17,7 @@ void approach(double& amount, double wanted, double seconds) {
   amount += std::clamp(wanted - amount, -step, step);
 }
 
+constexpr double kThingReach_m = 0.9;  // at which people walk round things that stand
 constexpr double kKeepsRight_s = 2.0;  // after a touch of a wall: two who meet there part
 
 /// Steering away from places ahead: to the right of those in the way, or always.
@@ -39,8 +40,8 @@ double evade(const ActorState& state, const std::vector<Vector2d>& others, bool 
 
 }  // namespace
 
-Actor::Actor(const PersonSpec& spec, const Walkway& walkway)
-    : spec_(spec), walkway_(&walkway), rig_(spec.build) {
+Actor::Actor(const PersonSpec& spec, const Walkway& walkway, ThingStage* things, std::size_t number)
+    : spec_(spec), walkway_(&walkway), rig_(spec.build), things_(things), number_(number) {
   if (spec_.script.empty()) spec_.script.emplace_back();
   state_.at = spec.start_m;
   state_.yaw = spec.yaw_rad;
@@ -66,12 +67,14 @@ Vector2d Actor::bodyPlace() const {
 
 void Actor::begin() {
   const Action& a = action();
+  phase_ = 0;
   planWay();
   if (a.kind == Action::Kind::sit && state_.sit < 0.5) state_.seat_m = a.seat_m;
   carry_wanted_ = a.carries ? 1.0 : 0.0;
 }
 
 void Actor::planWay() {
+  if (phase_ > 0) return;  // what is at a thing goes its way
   const Action& a = action();
   leg_ = 1;
   way_.clear();
@@ -80,12 +83,21 @@ void Actor::planWay() {
     const Vector2d front = a.at_m.head<2>() + rig_.scale() * kSeatBehind_m * direction(a.yaw_rad);
     way_ = walkway_->findWay(state_.at, front);
   }
+  if (handlesThing()) planThing();
 }
 
 bool Actor::turnTo(double yaw) {
   const double error = std::remainder(yaw - state_.yaw, 2.0 * M_PI);
   state_.yaw += std::clamp(error, -2.0 * kActorStep_s, 2.0 * kActorStep_s);
   return std::abs(error) < 0.05;
+}
+
+std::vector<Vector2d> Actor::inTheWay(std::vector<Vector2d> others, const Vector2d& way) const {
+  if (things_ == nullptr || handlesThing()) return others;
+  for (const Vector2d& thing : things_->standingNear(state_.at, kThingReach_m)) {
+    if ((thing - state_.at).dot(way) > 0.0) others.push_back(thing);
+  }
+  return others;
 }
 
 bool Actor::walk(const Vector2d& goal, double speed, const std::vector<Vector2d>& others) {
@@ -98,7 +110,8 @@ bool Actor::walk(const Vector2d& goal, double speed, const std::vector<Vector2d>
     return state_.speed_m_s < 0.05;
   }
   double slow = 1.0;
-  const double evading = left > 0.5 ? evade(state_, others, keeps_right_s_ > 0.0, slow) : 0.0;
+  const double evading =
+      left > 0.5 ? evade(state_, inTheWay(others, d), keeps_right_s_ > 0.0, slow) : 0.0;
   const double wanted = std::atan2(d.y(), d.x()) + std::clamp(evading, -1.1, 1.1);
   const double error = std::remainder(wanted - state_.yaw, 2.0 * M_PI);
   const double rate = 2.6 * kActorStep_s;
@@ -140,6 +153,7 @@ bool Actor::play(const std::vector<Vector2d>& others) {
   sit_wanted_ = crouch_wanted_ = talk_wanted_ = reach_wanted_ = 0.0;
   if (a.kind == Action::Kind::walk) return walk(a.at_m.head<2>(), a.speed_m_s, others);
   if (a.kind == Action::Kind::sit) return playSit(others);
+  if (handlesThing()) return playThing(others);
   state_.speed_m_s = 0.0;
   if (a.turns) turnTo(a.yaw_rad);
   const bool on = action_s_ < a.for_s;
@@ -200,6 +214,7 @@ void Actor::step(const std::vector<Vector2d>& others) {
   approach(state_.talk, talk_wanted_, 0.6);
   approach(state_.reach, reach_wanted_, 0.8);
   approach(state_.carry, carry_wanted_, 0.7);
+  approach(state_.grasp, grasp_wanted_, 0.8);
   const Vector2d velocity = (state_.at - before) / kActorStep_s;
   stepper_.step(state_.at, state_.yaw, velocity);
   state_.feet = stepper_.feet();

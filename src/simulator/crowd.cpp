@@ -47,18 +47,24 @@ ActorState interpolate(const ActorState& a, const ActorState& b, double t) {
   s.reach = mix(a.reach, b.reach);
   s.carry = mix(a.carry, b.carry);
   s.reach_at = a.reach_at + t * (b.reach_at - a.reach_at);
+  s.grasp = mix(a.grasp, b.grasp);
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.grasp_at[i] = a.grasp_at[i] + t * (b.grasp_at[i] - a.grasp_at[i]);
+  }
   s.time_s = mix(a.time_s, b.time_s);
   return s;
 }
 
 Crowd::Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
-             const std::function<Vector2d(double)>& camera, double duration_s) {
+             const std::function<Vector2d(double)>& camera, double duration_s, ThingStage* things) {
   std::vector<Actor> actors;
-  for (const auto& person : people) actors.emplace_back(person, walkway);
+  for (std::size_t i = 0; i < people.size(); ++i)
+    actors.emplace_back(people[i], walkway, things, i);
   tracks_.resize(people.size());
   const int steps = static_cast<int>(std::ceil(duration_s / kActorStep_s)) + 2;
   for (int step = 0; step < steps; ++step) {
     const Vector2d lens = camera(step * kActorStep_s);
+    if (things != nullptr) things->advance(step * kActorStep_s);
     std::vector<Vector2d> places;
     for (const auto& actor : actors) places.push_back(actor.bodyPlace());
     for (std::size_t i = 0; i < actors.size(); ++i) {
@@ -70,8 +76,10 @@ Crowd::Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
       for (const auto& other : others) {
         pushOut(actors[i], other, &other == &others[0] ? kCameraRadius_m : 2 * kPersonRadius_m);
       }
+      actors[i].carry();
       tracks_[i].push_back(actors[i].state());
     }
+    if (things != nullptr) things->record();
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulator/script.hpp"
+#include "simulator/thing_stage.hpp"
 #include "simulator/walkway.hpp"
 
 namespace pf::simulator {
@@ -28,6 +29,9 @@ struct ActorState {
   std::array<FootState, 2> feet;  ///< left, right
   double sit = 0.0, crouch = 0.0, talk = 0.0, reach = 0.0, carry = 0.0;
   Eigen::Vector3d reach_at = Eigen::Vector3d::Zero();
+  double grasp = 0.0;  ///< both hands at a thing
+  std::array<Eigen::Vector3d, 2> grasp_at{Eigen::Vector3d::Zero(),
+                                          Eigen::Vector3d::Zero()};  ///< left, right
   double seat_m = 0.45;
   double time_s = 0.0;
 };
@@ -36,12 +40,14 @@ struct ActorState {
 ActorState interpolate(const ActorState& a, const ActorState& b, double t);
 
 /// All people over time: their scripts played in steps of 1/60 s, before anything is drawn, so that
-/// any frame can be asked for. They keep clear of each other, of furniture and of the camera.
+/// any frame can be asked for. They keep clear of each other, of furniture and of the camera, and
+/// walk round things that stand.
 class Crowd {
  public:
-  /// `camera` gives the camera's place over the floor by time.
+  /// `camera` gives the camera's place over the floor by time. `things` play along, if given.
   Crowd(const std::vector<PersonSpec>& people, const Walkway& walkway,
-        const std::function<Eigen::Vector2d(double)>& camera, double duration_s);
+        const std::function<Eigen::Vector2d(double)>& camera, double duration_s,
+        ThingStage* things = nullptr);
 
   ActorState at(std::size_t person, double time_s) const;
   std::size_t size() const { return tracks_.size(); }

@@ -37,7 +37,7 @@ class ActiveStereo : public DepthKind {
         fb_(static_cast<float>(shot.camera.fx * shot.config.baseline_m)),
         distortion_(shot.config, shot.camera, shot.time_s) {}
 
-  void sense(int row, float* depth_m, std::uint8_t* person) const override {
+  void sense(int row, float* depth_m, std::uint8_t* label) const override {
     std::vector<char> hidden(static_cast<std::size_t>(shot_.camera.width), 0);
     if (shot_.config.shadow) markShadow(shot_, row, hidden);
     const RowLuck luck(row, shot_.camera.width, shot_.key);
@@ -45,7 +45,7 @@ class ActiveStereo : public DepthKind {
       const int from = registeredFrom(shot_, col);
       depth_m[col] =
           hidden[static_cast<std::size_t>(from)] != 0 ? 0.0F : reported(row, from, col, luck);
-      person[col] = shot_.view.person.at<std::uint8_t>(row, from);
+      label[col] = shot_.view.label.at<std::uint8_t>(row, from);
     }
   }
 

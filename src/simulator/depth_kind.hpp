@@ -25,8 +25,8 @@ struct DepthShot {
 class DepthKind {
  public:
   virtual ~DepthKind() = default;
-  /// Fills a row: depth (m; 0: none) and the person (1 + index; 0: the world) that it came from.
-  virtual void sense(int row, float* depth_m, std::uint8_t* person) const = 0;
+  /// Fills a row: depth (m; 0: none) and the label of DepthView that it came from.
+  virtual void sense(int row, float* depth_m, std::uint8_t* label) const = 0;
 };
 
 /// A projected pattern seen from beside (Xtion, Kinect); without `config.noise` the exact depth.

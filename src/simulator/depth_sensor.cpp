@@ -16,15 +16,15 @@ std::unique_ptr<DepthKind> makeKind(const DepthShot& shot) {
 
 }  // namespace
 
-void senseDepth(const DepthShot& shot, cv::Mat& depth_mm, cv::Mat& mask) {
+void senseDepth(const DepthShot& shot, cv::Mat& depth_mm, cv::Mat& label) {
   depth_mm.create(shot.view.depth_m.size(), CV_16UC1);
-  mask.create(shot.view.depth_m.size(), CV_8UC1);
+  label.create(shot.view.depth_m.size(), CV_8UC1);
   const auto kind = makeKind(shot);
   const int width = shot.camera.width, height = shot.camera.height;
   parallelFor(static_cast<std::size_t>(height), 4, [&](std::size_t begin, std::size_t end) {
     std::vector<float> depth_m(static_cast<std::size_t>(width));
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      kind->sense(row, depth_m.data(), mask.ptr<std::uint8_t>(row));
+      kind->sense(row, depth_m.data(), label.ptr<std::uint8_t>(row));
       for (int col = 0; col < width; ++col) {
         const float z = depth_m[static_cast<std::size_t>(col)];
         const bool seen = z > 0.0F && z >= shot.config.min_m && z <= shot.config.max_m;

@@ -9,8 +9,7 @@ namespace pf::simulator {
 
 /// From what is there to what the depth camera reports: CV_16UC1, millimetres, 0 = no depth.
 /// Truth that changes with the noise is changed along (lateral noise moves mask and depth
-/// together): `mask` receives, for every pixel, the person (1 + index) its depth came from, 0 for
-/// the world.
-void senseDepth(const DepthShot& shot, cv::Mat& depth_mm, cv::Mat& mask);
+/// together): `label` receives, for every pixel, that of DepthView which its depth came from.
+void senseDepth(const DepthShot& shot, cv::Mat& depth_mm, cv::Mat& label);
 
 }  // namespace pf::simulator

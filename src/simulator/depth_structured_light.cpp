@@ -34,7 +34,7 @@ class StructuredLight : public DepthKind {
                                      shot.config.disparity_steps)),
         distortion_(shot.config, shot.camera, shot.time_s) {}
 
-  void sense(int row, float* depth_m, std::uint8_t* person) const override {
+  void sense(int row, float* depth_m, std::uint8_t* label) const override {
     const DepthConfig& config = shot_.config;
     std::vector<char> shadow(static_cast<std::size_t>(shot_.camera.width), 0);
     if (config.noise && config.shadow) markShadow(shot_, row, shadow);
@@ -44,7 +44,7 @@ class StructuredLight : public DepthKind {
       const Source s = config.noise ? displaced(from, row, luck) : Source{from, row};
       depth_m[col] =
           shadow[static_cast<std::size_t>(from)] != 0 ? 0.0F : reported(s, col, row, luck);
-      person[col] = shot_.view.person.at<std::uint8_t>(s.row, s.col);
+      label[col] = shot_.view.label.at<std::uint8_t>(s.row, s.col);
     }
   }
 

@@ -31,11 +31,11 @@ class TimeOfFlight : public DepthKind {
   explicit TimeOfFlight(const DepthShot& shot)
       : shot_(shot), distortion_(shot.config, shot.camera, shot.time_s) {}
 
-  void sense(int row, float* depth_m, std::uint8_t* person) const override {
+  void sense(int row, float* depth_m, std::uint8_t* label) const override {
     for (int col = 0; col < shot_.camera.width; ++col) {
       const int from = registeredFrom(shot_, col);
       depth_m[col] = reported(row, from, col);
-      person[col] = shot_.view.person.at<std::uint8_t>(row, from);
+      label[col] = shot_.view.label.at<std::uint8_t>(row, from);
     }
   }
 

@@ -43,6 +43,7 @@ const std::map<std::string, Kind>& kinds() {
       {"curtain", {addCurtain, {0.1F, 1.4F, 2.2F}, "cloth", false}},
       {"bag", {addBag, {0.2F, 0.32F, 0.45F}, "cloth", true}},
       {"stairs", {addStairs, {0.84F, 1.6F, 0.68F}, "concrete", true}},
+      {"trolley", {addTrolley, {0.75F, 0.48F, 0.95F}, "metal", true}},
       {"monitor", {addMonitor, {0.2F, 0.52F, 0.42F}, "screen", false}},
       {"clutter", {addClutter, {0.5F, 0.8F, 0.25F}, "plastic", false}},
       {"poster", {addHanging, {0.006F, 0.6F, 0.85F}, "poster", false}},

@@ -57,5 +57,6 @@ void addLamp(const Part& part);
 void addCurtain(const Part& part);
 void addBag(const Part& part);
 void addStairs(const Part& part);
+void addTrolley(const Part& part);
 
 }  // namespace pf::simulator

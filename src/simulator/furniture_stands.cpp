@@ -112,6 +112,28 @@ void addBin(const Part& p) {
               {0.4F * p.size.x(), 0.5F * p.size.x(), p.size.z()});
 }
 
+void addTrolley(const Part& p) {
+  const auto steel = p.material();
+  const auto rubber = p.material("plastic", {0.05F, 0.05F, 0.05F});
+  const float d = p.size.x(), w = p.size.y(), h = p.size.z();
+  for (const float sx : {-1.0F, 1.0F}) {
+    for (const float sy : {-1.0F, 1.0F}) {
+      const Vector3f foot(sx * (0.5F * d - 0.03F), sy * (0.5F * w - 0.03F), 0.0F);
+      addCylinder(p.world, p.at, rubber, foot, {0.03F, 0.03F, 0.07F});
+      addCylinder(p.world, p.at, steel, foot + Vector3f(0, 0, 0.07F),
+                  {0.014F, 0.014F, h - (sx < 0 ? 0.07F : 0.2F)});
+    }
+  }
+  p.box(steel, {-0.5F * d + 0.03F, 0, h}, {0.03F, w - 0.03F, 0.03F});
+  for (const float z : {0.16F, h - 0.25F}) {
+    p.box(p.material("board", p.tint), {0, 0, z}, {d, w, 0.03F});
+    const float height = random(p.dice, 0.12, 0.3);
+    p.box(p.material("carton", Vector3f::Ones()),
+          {random(p.dice, -0.15, 0.15), random(p.dice, -0.05, 0.05), z + 0.015F + 0.5F * height},
+          {0.34F, 0.3F, height});
+  }
+}
+
 void addPillar(const Part& p) { p.box(p.material(), {0, 0, 0.5F * p.size.z()}, p.size); }
 
 void addMonitor(const Part& p) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "simulator/posed_people.hpp"
+#include "simulator/posed_movers.hpp"
 #include "simulator/raycaster.hpp"
 #include "simulator/world.hpp"
 
@@ -14,17 +14,22 @@ namespace pf::simulator {
 /// radiance of a white surface that faces there, lamps left out.
 using AmbientCube = std::array<Eigen::Vector3f, 6>;
 
-/// The people's surfaces at one moment, world.
-struct PeopleSurface {
-  std::vector<std::vector<Eigen::Vector3f>> positions, normals;  ///< [person][vertex]
-  std::vector<Eigen::Vector2f> places;                           ///< where they stand
+/// The surfaces of all that moves at one moment, world.
+struct MoverSurfaces {
+  /// A person's or a thing's vertices.
+  struct Body {
+    std::vector<Eigen::Vector3f> positions, normals;
+  };
+  std::vector<Body> people, things;
+  std::vector<Eigen::Vector2f> places;  ///< where they stand
 };
 
 /// Light on white surfaces at all vertices during one frame, as radiance.
 struct FrameLight {
   std::vector<Eigen::Vector3f> world;                ///< [vertex], with the people's shadows
   std::vector<std::vector<Eigen::Vector3f>> people;  ///< [person][vertex]
-  std::vector<std::uint32_t> shaded;                 ///< vertices of the world near people
+  std::vector<std::vector<Eigen::Vector3f>> things;  ///< [thing][vertex]
+  std::vector<std::uint32_t> shaded;                 ///< vertices of the world near movers
 };
 
 /// What a camera may see: all within an angle about its axis.
@@ -37,35 +42,38 @@ struct ViewCone {
 
 /// Light at the vertices of the static world: direct light of each lamp with soft shadows, and
 /// what the surfaces throw at each other (radiosity gathered with rays, two bounces). Worked out
-/// once, when it is made; from then on thread safe. People take light away from the vertices near
-/// them, frame by frame.
+/// once, when it is made; from then on thread safe. People and things that may move take light away
+/// from the vertices near them, frame by frame.
 class Lighting {
  public:
   Lighting(const World& world, const RayCaster& caster);
 
-  /// Light of a frame seen from `view` (world, metres): on the people where they may be seen from
-  /// there, and on the world with the shadows of those near. `people` cast them. `light` may be
-  /// that of another frame.
-  void illuminate(const PeopleSurface& surface, const PosedPeople& people, const ViewCone& view,
+  /// Light of a frame seen from `view` (world, metres): on people and things where they may be seen
+  /// from there, and on the world with the shadows of those near. `movers` cast them. `light` may
+  /// be that of another frame.
+  void illuminate(const MoverSurfaces& surfaces, const PosedMovers& movers, const ViewCone& view,
                   FrameLight& light) const;
 
  private:
-  void castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
+  void castShadows(const std::vector<Eigen::Vector2f>& places, const PosedMovers& movers,
                    FrameLight& light) const;
-  /// The share of a lamp's light that people take from up to 16 vertices of the world.
-  std::array<float, 16> shadowed(const PosedPeople& people, const std::uint32_t* vertices,
+  /// The share of a lamp's light that movers take from up to 16 vertices of the world.
+  std::array<float, 16> shadowed(const PosedMovers& movers, const std::uint32_t* vertices,
                                  std::size_t count, std::size_t lamp) const;
-  /// Light on up to 16 points of a person: lamps with shadows, then the rest by the nearest cubes.
+  /// Light on a body that `view` may see. `openness` of its vertices; none: open all over.
+  void lightBody(const MoverSurfaces::Body& body, const float* openness, const PosedMovers& movers,
+                 const ViewCone& view, std::vector<Eigen::Vector3f>& out) const;
+  /// Light on up to 16 points of a body: lamps with shadows, then the rest by the nearest cubes.
   struct Skin {
     std::size_t count = 0;
     const Eigen::Vector3f* positions = nullptr;
     const Eigen::Vector3f* normals = nullptr;
-    const float* openness = nullptr;
+    const float* openness = nullptr;                ///< none: a thing, open and seen all over
     const std::vector<AreaLight>* lamps = nullptr;  ///< that may light them
   };
   /// Those whose light on a body within the box is worth a ray.
   std::vector<AreaLight> lampsFor(const Eigen::AlignedBox3f& box) const;
-  void light(const Skin& skin, const PosedPeople& people, const Eigen::Vector3f& eye,
+  void light(const Skin& skin, const PosedMovers& movers, const Eigen::Vector3f& eye,
              Eigen::Vector3f* out) const;
   Eigen::Vector3f ambient(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const;
   void gatherDirect();

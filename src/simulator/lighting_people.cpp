@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Light that changes with every frame: on people, and in their shadows.
+// Light that changes with every frame: on people and things that may move, and in their shadows.
 #include <algorithm>
 #include <cmath>
 
@@ -41,10 +41,10 @@ bool ViewCone::sees(const Eigen::AlignedBox3f& box) const {
   return angle <= half_angle_rad + std::asin(radius / distance);
 }
 
-void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& people,
+void Lighting::illuminate(const MoverSurfaces& surfaces, const PosedMovers& movers,
                           const ViewCone& view, FrameLight& light) const {
   const Vector3f& eye = view.eye;
-  auto places = surface.places;
+  auto places = surfaces.places;
   float ceiling = 0.0F;
   for (const auto& room : world_.rooms)
     ceiling = std::max(ceiling, static_cast<float>(room.max().z()));
@@ -55,23 +55,32 @@ void Lighting::illuminate(const PeopleSurface& surface, const PosedPeople& peopl
     return (p - eye.head<2>()).norm() > kSeenReach_m || !view.sees({low, high});
   };
   places.erase(std::remove_if(places.begin(), places.end(), is_unseen), places.end());
-  castShadows(places, people, light);
-  light.people.resize(surface.positions.size());
-  for (std::size_t person = 0; person < light.people.size(); ++person) {
-    const Vector3f* positions = surface.positions[person].data();
-    const Vector3f* normals = surface.normals[person].data();
-    const float* openness = people.avatar(person).openness().data();
-    auto& out = light.people[person];
-    out.resize(surface.positions[person].size());
-    Eigen::AlignedBox3f box;
-    for (std::size_t v = 0; v < out.size(); ++v) box.extend(positions[v]);
-    if (!view.sees(box)) continue;
-    const auto lamps = lampsFor(box);
-    forPackets(out.size(), [&](std::size_t first, std::size_t count) {
-      this->light({count, positions + first, normals + first, openness + first, &lamps}, people,
-                  eye, &out[first]);
-    });
+  castShadows(places, movers, light);
+  light.people.resize(surfaces.people.size());
+  for (std::size_t i = 0; i < light.people.size(); ++i) {
+    const float* openness = movers.avatar(i).openness().data();
+    lightBody(surfaces.people[i], openness, movers, view, light.people[i]);
   }
+  light.things.resize(surfaces.things.size());
+  for (std::size_t i = 0; i < light.things.size(); ++i) {
+    lightBody(surfaces.things[i], nullptr, movers, view, light.things[i]);
+  }
+}
+
+void Lighting::lightBody(const MoverSurfaces::Body& body, const float* openness,
+                         const PosedMovers& movers, const ViewCone& view,
+                         std::vector<Vector3f>& out) const {
+  const Vector3f* positions = body.positions.data();
+  const Vector3f* normals = body.normals.data();
+  out.resize(body.positions.size());
+  Eigen::AlignedBox3f box;
+  for (std::size_t v = 0; v < out.size(); ++v) box.extend(positions[v]);
+  if (!view.sees(box)) return;
+  const auto lamps = lampsFor(box);
+  forPackets(out.size(), [&](std::size_t first, std::size_t count) {
+    const float* open = openness == nullptr ? nullptr : openness + first;
+    light({count, positions + first, normals + first, open, &lamps}, movers, view.eye, &out[first]);
+  });
 }
 
 std::vector<AreaLight> Lighting::lampsFor(const Eigen::AlignedBox3f& box) const {
@@ -85,7 +94,7 @@ std::vector<AreaLight> Lighting::lampsFor(const Eigen::AlignedBox3f& box) const 
   return lamps;
 }
 
-void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const PosedPeople& people,
+void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const PosedMovers& movers,
                            FrameLight& light) const {
   const Mesh& mesh = world_.mesh;
   if (light.world.size() != light_.size()) light.world = light_;
@@ -102,7 +111,7 @@ void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const Pos
   forPackets(light.shaded.size(), [&](std::size_t first, std::size_t count) {
     const std::uint32_t* vertices = &light.shaded[first];
     for (std::size_t l = 0; l < lamps; ++l) {
-      const auto taken = shadowed(people, vertices, count, l);
+      const auto taken = shadowed(movers, vertices, count, l);
       for (std::size_t i = 0; i < count; ++i) {
         const float part = taken[i] * direct_[vertices[i] * lamps + l];
         light.world[vertices[i]] -= part * world_.lights[l].radiance;
@@ -111,7 +120,7 @@ void Lighting::castShadows(const std::vector<Eigen::Vector2f>& places, const Pos
   });
 }
 
-std::array<float, 16> Lighting::shadowed(const PosedPeople& people, const std::uint32_t* vertices,
+std::array<float, 16> Lighting::shadowed(const PosedMovers& movers, const std::uint32_t* vertices,
                                          std::size_t count, std::size_t lamp) const {
   const Mesh& mesh = world_.mesh;
   const AreaLight& area = world_.lights[lamp];
@@ -128,23 +137,25 @@ std::array<float, 16> Lighting::shadowed(const PosedPeople& people, const std::u
     for (std::size_t i = 0; i < count; ++i) {
       sight.to[i] = lampPoint(area, ray, hash(vertices[i], 6U));
     }
-    const auto blocked = people.block(sight, 0.01F);
+    const auto blocked = movers.block(sight, 0.01F);
     for (std::size_t i = 0; i < count; ++i) taken[i] += blocked[i] ? 1.0F / kShadowRays : 0.0F;
   }
   return taken;
 }
 
-void Lighting::light(const Skin& skin, const PosedPeople& people, const Vector3f& eye,
+void Lighting::light(const Skin& skin, const PosedMovers& movers, const Vector3f& eye,
                      Vector3f* out) const {
   std::array<bool, kPacket> seen{};
   SightPacket sight;
+  std::array<float, kPacket> open;
   for (std::size_t i = 0; i < skin.count; ++i) {
+    open[i] = skin.openness == nullptr ? 1.0F : skin.openness[i];
     const Vector3f& p = skin.positions[i];
     const Vector3f& n = skin.normals[i];
     // Well beyond the horizon too: triangles across it are seen. What is skipped must not keep the
     // light of an earlier frame: a slim triangle may show a trace of it at its rim.
-    seen[i] = n.dot(eye - p) >= -0.6F * (eye - p).norm();
-    out[i] = seen[i] ? Vector3f(skin.openness[i] * ambient(p, n)) : Vector3f::Zero();
+    seen[i] = skin.openness == nullptr || n.dot(eye - p) >= -0.6F * (eye - p).norm();
+    out[i] = seen[i] ? Vector3f(open[i] * ambient(p, n)) : Vector3f::Zero();
     sight.from[i] = p + 0.012F * n;
   }
   for (const AreaLight& lamp : *skin.lamps) {
@@ -156,12 +167,11 @@ void Lighting::light(const Skin& skin, const PosedPeople& people, const Vector3f
     }
     const auto dark = caster_.blocks(sight, 0.02F);
     for (std::size_t i = 0; i < skin.count; ++i) sight.asked[i] = sight.asked[i] && !dark[i];
-    const auto shaded = people.block(sight, 0.02F);
+    const auto shaded = movers.block(sight, 0.02F);
     for (std::size_t i = 0; i < skin.count; ++i) {
       if (!sight.asked[i]) continue;
       // A lamp is wide: its shadow on the body itself is never black.
-      out[i] +=
-          factor[i] * (shaded[i] ? 0.25F : 1.0F) * (0.5F + 0.5F * skin.openness[i]) * lamp.radiance;
+      out[i] += factor[i] * (shaded[i] ? 0.25F : 1.0F) * (0.5F + 0.5F * open[i]) * lamp.radiance;
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "simulator/depth_distortion.hpp"
 #include "simulator/output.hpp"
 #include "simulator/sense_files.hpp"
+#include "simulator/thing_files.hpp"
 #include "simulator/truth.hpp"
 #include "simulator/truth_files.hpp"
 
@@ -17,18 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kSpacing_m = 0.03;  // of scene_points.ply
+
 class TumOutput : public Output {
  public:
   TumOutput(const std::string& folder, const Simulation& simulation)
       : folder_(folder), writer_(folder, simulation.scenario().camera, 1000.0) {
     for (const char* part : {"mask", "person_mask"}) makeFolder(folder_ / part);
-    saveSceneMesh(folder_ / "scene.ply", simulation.world());
+    if (!simulation.things().empty()) makeFolder(folder_ / "thing_mask");
     const Scenario& scenario = simulation.scenario();
     saveCalibration(
         folder_ / "depth_field.yaml",
         {"specimen " + std::to_string(scenario.depth.specimen), scenario.camera,
          trueField(scenario.depth, scenario.camera, scenario.start_s + 0.5 * scenario.duration_s)});
-    saveScenePoints(folder_ / "scene_points.ply", simulation.world(), 0.03);
   }
 
   void add(const SimulatedFrame& frame) override {
@@ -37,17 +39,22 @@ class TumOutput : public Output {
     writer_.add(frame.frame, frame.depth_stamp_ns);
     writer_.addMask(frame.frame.stamp_ns, frame.mask > 0);
     writer_.addPeople(asDetected(frame));
-    savePng(folder_ / "person_mask" / (formatStamp(frame.frame.stamp_ns) + ".png"), frame.mask);
+    const std::string file = formatStamp(frame.frame.stamp_ns) + ".png";
+    savePng(folder_ / "person_mask" / file, frame.mask);
+    if (!frame.thing_mask.empty()) savePng(folder_ / "thing_mask" / file, frame.thing_mask);
   }
 
   void finish(const Simulation& simulation) override {
-    for (const auto& pose : simulation.truth(static_cast<int>(records_.size()))) {
-      writer_.addTruth(pose);
-    }
+    const int frames = static_cast<int>(records_.size());
+    for (const auto& pose : simulation.truth(frames)) writer_.addTruth(pose);
     writer_.finish();
     saveJoints(folder_ / "joints.json", records_);
     saveEvents(folder_ / "events.json", simulation, records_);
-    saveSenses(folder_, simulation, static_cast<int>(records_.size()));
+    saveSenses(folder_, simulation, frames);
+    const Mesh scene = simulation.sceneAfter(frames);
+    saveSceneMesh(folder_ / "scene.ply", simulation.world(), scene);
+    saveScenePoints(folder_ / "scene_points.ply", simulation.world(), scene, kSpacing_m);
+    if (!simulation.things().empty()) saveThings(folder_, simulation, frames);
   }
 
  private:

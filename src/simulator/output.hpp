@@ -20,8 +20,9 @@ class Output {
 /// A TUM folder: rgb/ depth/ mask/ (255 = person) person_mask/ (ids), rgb.txt depth.txt
 /// associations.txt groundtruth.txt (at the rate of the motion capture) camera.yaml
 /// depth_field.yaml (the true systematic error of depth) people.json joints.json events.json
-/// scene.ply scene_points.ply, and what saveSenses() writes. Throws InputError naming what cannot
-/// be written.
+/// scene.ply scene_points.ply (as at the last frame), what saveSenses() writes, and where things
+/// may move thing_mask/ (1 + number of those that do) and what saveThings() writes. Throws
+/// InputError naming what cannot be written.
 std::unique_ptr<Output> openTumOutput(const std::string& folder, const Simulation& simulation);
 
 }  // namespace pf::simulator

@@ -5,7 +5,7 @@
 
 #include "simulator/avatar.hpp"
 #include "simulator/person_room.hpp"
-#include "simulator/posed_people.hpp"
+#include "simulator/posed_movers.hpp"
 #include "simulator/walkway.hpp"
 
 namespace pf::simulator {

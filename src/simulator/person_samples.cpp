@@ -100,13 +100,13 @@ class Studio {
         cast_(drawCast(2 + dice_.below(kSamplePeople - 1), dice_)),
         caster_(room_.world.mesh),
         renderer_(room_.world, caster_),
-        people_(caster_, cast_, 1) {}
+        people_(caster_, cast_, nothing_, 1) {}
 
   std::vector<PersonSample> samples() {
     std::vector<PersonSample> out;
     while (out.size() < kSamplesPerRoom) {
       const Arrangement arrangement = arrange(room_, walkway_, cast_, dice_);
-      people_.pose({arrangement.postures});
+      people_.pose({{arrangement.postures}});
       for (int i = 0; i < kCamerasPerArrangement; ++i) out.push_back(sample(arrangement));
     }
     return out;
@@ -131,7 +131,7 @@ class Studio {
       const auto joints = jointsOf(cast_[i].rig(), arrangement.postures[i]);
       const PersonTruth seen = observe(static_cast<int>(i), joints, camera, view, view_);
       if (seen.pixels > 0) {
-        out.people[i] = truthOf(seen, camera, view.inverse(), view_.person);
+        out.people[i] = truthOf(seen, camera, view.inverse(), view_.label);
       }
     }
     return out;
@@ -143,7 +143,8 @@ class Studio {
   std::vector<Avatar> cast_;
   RayCaster caster_;
   Renderer renderer_;
-  PosedPeople people_;
+  const std::vector<ThingShape> nothing_;
+  PosedMovers people_;
   DepthView view_;
 };
 

@@ -97,7 +97,8 @@ void Poser::poseTrunk() {
       yaw_ * Vector3f(0.008F * drift(seed_ + 1U, time, 3.0), 0.014F * drift(seed_, time, 4.0), 0);
   const float rising = 4.0F * sit * (1.0F - sit);
   const float lean = 0.04F * static_cast<float>(state_.speed_m_s) + 0.65F * rising - 0.10F * sit +
-                     0.55F * crouch + 0.16F * smooth(state_.reach) - 0.05F * smooth(state_.carry) +
+                     0.55F * crouch + 0.45F * crouch * smooth(state_.grasp) +
+                     0.16F * smooth(state_.reach) - 0.05F * smooth(state_.carry) +
                      0.03F * drift(seed_ + 2U, time, 5.0);
   const float stride = forwardOf(0) - forwardOf(1);
   const float twist = -0.16F * std::clamp(stride, -0.8F, 0.8F) * (1.0F - sit);
@@ -187,6 +188,7 @@ Vector3f Poser::wantedHand(float side, const Vector3f& shoulder) const {
   const Vector3f goal = state_.reach_at.cast<float>();
   const float lateral = (yaw_.transpose() * (goal - hand)).y();
   if (side * (lateral + 0.02F) > 0.0F) blend(goal, state_.reach);
+  blend(state_.grasp_at[side > 0 ? 0 : 1].cast<float>(), state_.grasp);
   return hand;
 }
 

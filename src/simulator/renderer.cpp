@@ -72,7 +72,7 @@ Vector3f shadePerson(const RayPacket& packet, int lane, const Scene& scene) {
   const std::size_t person = packet.rays.hit.geomID[lane] - 1U;
   const std::uint32_t triangle = packet.rays.hit.primID[lane];
   const float u = packet.rays.hit.u[lane], v = packet.rays.hit.v[lane];
-  const Avatar& avatar = scene.people.avatar(person);
+  const Avatar& avatar = scene.movers.avatar(person);
   const auto& t = avatar.triangles()[triangle];
   const auto& light = scene.light.people[person];
   const Vector3f incoming = (1.0F - u - v) * light[t[0]] + u * light[t[1]] + v * light[t[2]];
@@ -81,13 +81,11 @@ Vector3f shadePerson(const RayPacket& packet, int lane, const Scene& scene) {
 
 }  // namespace
 
-Vector3f Renderer::shadeWorld(const RayPacket& packet, int lane, float pixel_rad,
-                              const FrameLight& frame) const {
-  const Mesh& mesh = world_.mesh;
+Vector3f Renderer::shadeMesh(const RayPacket& packet, int lane, float pixel_rad, const Mesh& mesh,
+                             const std::vector<Vector3f>& light) const {
   const std::uint32_t triangle = packet.rays.hit.primID[lane];
   const auto& t = mesh.triangles[triangle];
   const float u = packet.rays.hit.u[lane], v = packet.rays.hit.v[lane], w = 1.0F - u - v;
-  const auto& light = frame.world;
   const Vector3f incoming = w * light[t[0]] + u * light[t[1]] + v * light[t[2]];
   const Eigen::Vector2f uv = w * mesh.uv[t[0]] + u * mesh.uv[t[1]] + v * mesh.uv[t[2]];
   const Material& material = world_.materials[mesh.materials[triangle]];
@@ -104,8 +102,10 @@ Vector3f Renderer::shade(const RayPacket& packet, int lane, float pixel_rad,
                          const Scene& scene) const {
   const std::uint32_t geometry = packet.rays.hit.geomID[lane];
   if (geometry == RTC_INVALID_GEOMETRY_ID) return Vector3f::Constant(0.02F);
-  return geometry == 0 ? shadeWorld(packet, lane, pixel_rad, scene.light)
-                       : shadePerson(packet, lane, scene);
+  if (geometry == 0) return shadeMesh(packet, lane, pixel_rad, world_.mesh, scene.light.world);
+  if (geometry < kFirstThing) return shadePerson(packet, lane, scene);
+  const std::size_t thing = geometry - kFirstThing;
+  return shadeMesh(packet, lane, pixel_rad, scene.movers.thing(thing), scene.light.things[thing]);
 }
 
 bool Renderer::drawBlock(const PinholeCamera& camera, const Shutter& shutter, const Scene& scene,
@@ -113,18 +113,18 @@ bool Renderer::drawBlock(const PinholeCamera& camera, const Shutter& shutter, co
   const auto pixel_rad = static_cast<float>(1.0 / camera.fx);
   std::array<Vector3f, 16> sum;
   sum.fill(Vector3f::Zero());
-  bool people = false;
+  bool movers = false;
   RayPacket packet;
   for (int s = 0; s < shutter.samples; ++s) {
     aim(camera, shutter.at(corner.y(), camera.height, s), corner, sampleOffset(s, shutter.samples),
         packet);
     caster_.trace(packet);
-    scene.people.trace(packet);
+    scene.movers.trace(packet);
     for (int lane = 0; lane < 16; ++lane) {
       if (packet.valid[lane] == 0) continue;
       sum[static_cast<std::size_t>(lane)] += shade(packet, lane, pixel_rad, scene);
       const std::uint32_t geometry = packet.rays.hit.geomID[lane];
-      people |= geometry != 0 && geometry != RTC_INVALID_GEOMETRY_ID;
+      movers |= geometry != 0 && geometry != RTC_INVALID_GEOMETRY_ID;
     }
   }
   for (int lane = 0; lane < 16; ++lane) {
@@ -133,21 +133,21 @@ bool Renderer::drawBlock(const PinholeCamera& camera, const Shutter& shutter, co
     radiance.at<cv::Vec3f>(corner.y() + lane / 4, corner.x() + lane % 4) = {mean.x(), mean.y(),
                                                                             mean.z()};
   }
-  return people;
+  return movers;
 }
 
 void Renderer::color(const PinholeCamera& camera, const Shutter& still, const Shutter& moving,
                      const Scene& scene, cv::Mat& radiance) const {
   radiance.create(camera.height, camera.width, CV_32FC3);
   forBlocks(camera, [&](const Eigen::Vector2i& corner) {
-    const bool people = drawBlock(camera, still, scene, corner, radiance);
-    if (people && moving.samples > still.samples) {
+    const bool movers = drawBlock(camera, still, scene, corner, radiance);
+    if (movers && moving.samples > still.samples) {
       drawBlock(camera, moving, scene, corner, radiance);
     }
   });
 }
 
-void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& people,
+void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedMovers& movers,
                           const Eigen::Vector2i& pixel, const Vector3f& axis,
                           DepthView& out) const {
   const int row = pixel.y(), col = pixel.x();
@@ -157,7 +157,7 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& 
   const bool any = geometry != RTC_INVALID_GEOMETRY_ID;
   const Vector3f d(ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]);
   out.depth_m.at<float>(row, col) = any ? ray.tfar[lane] * d.dot(axis) : 0.0F;
-  out.person.at<std::uint8_t>(row, col) = any ? static_cast<std::uint8_t>(geometry) : 0;
+  out.label.at<std::uint8_t>(row, col) = any ? static_cast<std::uint8_t>(geometry) : 0;
   out.cosine.at<float>(row, col) = 0.0F;
   out.infrared.at<float>(row, col) = 0.0F;
   out.gloss.at<float>(row, col) = 0.0F;
@@ -165,36 +165,37 @@ void Renderer::storeDepth(const RayPacket& packet, int lane, const PosedPeople& 
   if (!any) return;
   const Vector3f n(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
   out.cosine.at<float>(row, col) = std::abs(n.dot(d)) / std::max(n.norm() * d.norm(), 1e-12F);
-  if (geometry == 0) {
-    const Material& material = world_.materials[world_.mesh.materials[hit.primID[lane]]];
+  if (geometry == 0 || geometry >= kFirstThing) {
+    const Mesh& mesh = geometry == 0 ? world_.mesh : movers.thing(geometry - kFirstThing);
+    const Material& material = world_.materials[mesh.materials[hit.primID[lane]]];
     out.infrared.at<float>(row, col) = material.infrared;
     out.gloss.at<float>(row, col) = material.gloss;
     out.contrast.at<float>(row, col) = material.contrast;
     return;
   }
   out.contrast.at<float>(row, col) = kClothContrast;
-  const Avatar& avatar = people.avatar(geometry - 1U);
+  const Avatar& avatar = movers.avatar(geometry - 1U);
   out.infrared.at<float>(row, col) =
       avatar.appearance().infrared(avatar.surfacePoint(hit.primID[lane], hit.u[lane], hit.v[lane]));
 }
 
-void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, const PosedPeople& people,
+void Renderer::depth(const PinholeCamera& camera, const ViewSample& view, const PosedMovers& movers,
                      DepthView& out) const {
   const cv::Size size(camera.width, camera.height);
   for (cv::Mat* image : {&out.depth_m, &out.cosine, &out.infrared, &out.gloss, &out.contrast}) {
     image->create(size, CV_32FC1);
   }
-  out.person.create(size, CV_8UC1);
+  out.label.create(size, CV_8UC1);
   const Vector3f axis = view.R_world_camera.col(2);
   const ViewSample views[kViewsPerSample] = {view, view, view, view};
   forBlocks(camera, [&](const Eigen::Vector2i& corner) {
     RayPacket packet;
     aim(camera, views, corner, Eigen::Vector2f::Zero(), packet);
     caster_.trace(packet);
-    people.trace(packet);
+    movers.trace(packet);
     for (int lane = 0; lane < 16; ++lane) {
       if (packet.valid[lane] == 0) continue;
-      storeDepth(packet, lane, people, corner + Eigen::Vector2i(lane % 4, lane / 4), axis, out);
+      storeDepth(packet, lane, movers, corner + Eigen::Vector2i(lane % 4, lane / 4), axis, out);
     }
   });
 }

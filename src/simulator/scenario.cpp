@@ -143,11 +143,17 @@ Scenario loadScenario(const std::string& name_or_file, const ScenarioChanges& ch
   s.fps = map.number("fps", s.fps, 0.5, 240.0);
   s.dropped = map.number("dropped", s.dropped, 0.0, 0.9);
   readPlaces(map, s);
-  for (auto& person : map.maps("people")) {
-    s.people.push_back(
-        readPerson(person, hash(s.seed, 43U, static_cast<std::uint32_t>(s.people.size()))));
+  for (auto& thing : map.maps("things")) {
+    const auto index = static_cast<std::uint32_t>(s.things.size());
+    s.things.push_back(readThing(thing, s.things, hash(s.seed, 42U, index)));
   }
-  if (s.people.size() > 30) map.fail("people", "has more than 30 entries");
+  if (s.things.size() > kMostThings) map.fail("things", "has more than 150 entries");
+  s.things_move = map.flag("things_move", s.things_move);
+  for (auto& person : map.maps("people")) {
+    const auto index = static_cast<std::uint32_t>(s.people.size());
+    s.people.push_back(readPerson(person, hash(s.seed, 43U, index), s.things));
+  }
+  if (s.people.size() > kMostPeople) map.fail("people", "has more than 30 entries");
   readCamera(map.map("camera"), s);
   YamlFields color(map.map("color")), depth(map.map("depth")), legs(map.map("legs"));
   visitFields(s.color, color);

@@ -13,6 +13,7 @@
 #include "simulator/imu_config.hpp"
 #include "simulator/legs_config.hpp"
 #include "simulator/script.hpp"
+#include "simulator/thing.hpp"
 
 namespace pf::simulator {
 
@@ -36,6 +37,8 @@ struct Scenario {
   std::vector<RoomSpec> rooms;
   std::vector<ObjectSpec> objects;
   std::vector<PersonSpec> people;
+  std::vector<ThingSpec> things;
+  bool things_move = true;  ///< false: all stay where they are at first, people do as they would
   std::optional<HandHeld> hand_held;
   std::optional<Robot> robot;
   PinholeCamera camera;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "simulator/room_furniture.hpp"
 
@@ -12,17 +13,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A place of two or three numbers.
-Vector3d readPlace(YamlMap& map, const std::string& key, double otherwise_z) {
-  const auto place = map.placeOf(key);
-  if (!place) map.fail(key, "is missing, expected [x, y] or [x, y, z] in metres");
-  return {place->x(), place->y(), std::isnan(place->z()) ? otherwise_z : place->z()};
-}
-
-Action readAction(YamlMap& map) {
+Action readAction(YamlMap& map, const std::vector<ThingSpec>& things) {
   Action a;
-  const std::string what =
-      map.word("do", "stand", {"walk", "carry", "stand", "talk", "sit", "reach", "crouch"});
+  const std::string what = map.word(
+      "do", "stand",
+      {"walk", "carry", "stand", "talk", "sit", "reach", "crouch", "take", "put", "push", "swing"});
+  static const std::map<std::string, Action::Kind> with_thing = {{"take", Action::Kind::take},
+                                                                 {"put", Action::Kind::put},
+                                                                 {"push", Action::Kind::push},
+                                                                 {"swing", Action::Kind::swing}};
+  if (const auto kind = with_thing.find(what); kind != with_thing.end()) {
+    readThingAction(map, kind->second, things, a);
+    return a;
+  }
   if (what == "walk" || what == "carry") {
     a.kind = Action::Kind::walk;
     a.carries = what == "carry";
@@ -138,6 +141,12 @@ HandHeld readHandHeld(YamlMap& map, const std::string& pattern) {
 
 }  // namespace
 
+Vector3d readPlace(YamlMap& map, const std::string& key, double otherwise_z) {
+  const auto place = map.placeOf(key);
+  if (!place) map.fail(key, "is missing, expected [x, y] or [x, y, z] in metres");
+  return {place->x(), place->y(), std::isnan(place->z()) ? otherwise_z : place->z()};
+}
+
 RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32_t seed) {
   RoomSpec r = readLike(map, before, seed);
   r.origin_m = map.vector2("origin_m", r.origin_m);
@@ -168,7 +177,7 @@ RoomSpec readRoom(YamlMap& map, const std::vector<RoomSpec>& before, std::uint32
   return r;
 }
 
-ObjectSpec readObject(YamlMap& map, std::uint32_t seed) {
+ObjectSpec readObjectFields(YamlMap& map, std::uint32_t seed) {
   ObjectSpec o;
   o.kind = map.word("kind", "", objectKinds());
   if (map.has("texture")) o.texture = map.word("texture", "", textureKinds());
@@ -179,11 +188,16 @@ ObjectSpec readObject(YamlMap& map, std::uint32_t seed) {
   o.color = map.maybeVector3("color");
   o.seed =
       map.has("seed") ? static_cast<std::uint32_t>(map.integer("seed", 0, 0, 1000000000)) : seed;
+  return o;
+}
+
+ObjectSpec readObject(YamlMap& map, std::uint32_t seed) {
+  ObjectSpec o = readObjectFields(map, seed);
   map.finish();
   return o;
 }
 
-PersonSpec readPerson(YamlMap& map, std::uint32_t seed) {
+PersonSpec readPerson(YamlMap& map, std::uint32_t seed, const std::vector<ThingSpec>& things) {
   PersonSpec p;
   Dice dice(seed);
   p.name = map.text("name", "");
@@ -198,7 +212,8 @@ PersonSpec readPerson(YamlMap& map, std::uint32_t seed) {
   p.delay_s = map.number("delay_s", 0.0, 0.0, 36000.0);
   p.repeats = map.flag("repeats", true);
   p.stray_m = map.number("stray_m", p.stray_m, 0.0, 10.0);
-  for (auto& action : map.maps("script")) p.script.push_back(readAction(action));
+  for (auto& action : map.maps("script")) p.script.push_back(readAction(action, things));
+  settleHands(map, p);
   map.finish();
   return p;
 }

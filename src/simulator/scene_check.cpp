@@ -77,14 +77,36 @@ std::string troubleAt(const Eigen::Vector3f& p, const World& world, const RayCas
   return 2 * behind > hits ? "is inside a wall or a thing" : "";
 }
 
+void expectNearRooms(const std::string& key, const World& world, const Eigen::Vector3d& at) {
+  const Vector2d p = at.head<2>();
+  if (isInside(world, p, kWall_m)) return;
+  throw InputError(key + textOf(p) + "outside of all rooms");
+}
+
+/// Where a script or a move takes a thing.
+void expectPathInside(const std::string& key, const World& world,
+                      const std::vector<Eigen::Vector3d>& path) {
+  for (const auto& place : path) expectInside(key + "path", world, place.head<2>());
+}
+
+void checkThings(const Scenario& scenario, const World& world) {
+  for (std::size_t i = 0; i < scenario.things.size(); ++i) {
+    const ThingSpec& thing = scenario.things[i];
+    const std::string key = entryOf("things", i) + ".";
+    expectNearRooms(key + "at_m", world, thing.object.at_m);
+    for (std::size_t k = 0; k < thing.moves.size(); ++k) {
+      expectPathInside(key + entryOf("moves", k) + ".", world, thing.moves[k].path_m);
+    }
+  }
+}
+
 }  // namespace
 
 void checkScene(const Scenario& scenario, const World& world) {
   for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
-    const Vector2d at = scenario.objects[i].at_m.head<2>();
-    if (isInside(world, at, kWall_m)) continue;
-    throw InputError(entryOf("objects", i) + ".at_m" + textOf(at) + "outside of all rooms");
+    expectNearRooms(entryOf("objects", i) + ".at_m", world, scenario.objects[i].at_m);
   }
+  checkThings(scenario, world);
   const Walkway standing(world, kStanding_m), walking(world, kWalkClearance_m);
   for (std::size_t i = 0; i < scenario.people.size(); ++i) {
     const PersonSpec& person = scenario.people[i];
@@ -97,6 +119,8 @@ void checkScene(const Scenario& scenario, const World& world) {
       const Vector2d at = a.at_m.head<2>();
       if (a.kind == Action::Kind::walk) expectStandable(key + "to", world, standing, at);
       if (a.kind == Action::Kind::sit) expectInside(key + "on", world, at);
+      if (a.kind == Action::Kind::put) expectInside(key + "at", world, at);
+      expectPathInside(key, world, a.path_m);
       if (a.kind != Action::Kind::walk && a.kind != Action::Kind::sit) continue;
       if (walking.connects(person.start_m, at)) continue;
       throw InputError(key + (a.kind == Action::Kind::sit ? "on" : "to") + textOf(at) +

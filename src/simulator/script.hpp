@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,16 +13,19 @@ namespace pf::simulator {
 
 /// One thing a person does. Walking finds its own way round the furniture.
 struct Action {
-  enum class Kind { walk, stand, talk, sit, reach, crouch };
+  enum class Kind { walk, stand, talk, sit, reach, crouch, take, put, push, swing };
   Kind kind = Kind::stand;
-  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< walk: goal; sit: seat; reach: for the hand
-  double yaw_rad = 0.0;                            ///< sit, stand, talk: facing there (world)
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< goal; seat; for the hand; put: there
+  double yaw_rad = 0.0;                            ///< facing there (world); put: of the thing
   bool turns = false;                              ///< whether yaw_rad is given
-  double for_s = 2.0;                              ///< all but walk
-  double speed_m_s = 1.0;                          ///< walk
+  double for_s = 2.0;                              ///< all but walk; swing: of the thing
+  double speed_m_s = 1.0;                          ///< walk, push
   double seat_m = 0.45;                            ///< height of the seat
   bool carries = false;                            ///< walk: with a box in both hands
   bool gestures = false;                           ///< sit: hands talk too
+  std::size_t thing = 0;                           ///< take, put, push, swing: number of the thing
+  std::vector<Eigen::Vector3d> path_m;             ///< push: of the thing
+  double turn_rad = 0.0;                           ///< swing: about its hinge
 };
 
 /// A person of a scene file.

@@ -131,6 +131,32 @@ std::int64_t Simulation::stampOf(double time_s) const {
   return kFirstStamp_ns + static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000;
 }
 
+std::vector<std::vector<ThingChange>> Simulation::thingChanges(int frames) const {
+  const auto [from, to] = spanOf(frames);
+  std::vector<std::vector<ThingChange>> changes;
+  for (const ThingTrack& track : state_->thing_tracks) changes.push_back(track.changes(from, to));
+  return changes;
+}
+
+Trajectory Simulation::thingPoses(std::size_t thing, int frames) const {
+  const auto [from, to] = spanOf(frames);
+  const ThingTrack& track = state_->thing_tracks[thing];
+  Trajectory poses;
+  for (const double t : track.knots(from, to)) poses.push_back({stampOf(t), track.at(t).matrix()});
+  return poses;
+}
+
+Mesh Simulation::sceneAfter(int frames) const {
+  const State& s = *state_;
+  const double last_s = s.momentsOf(std::max(0, frames - 1), {}).depth;
+  Mesh scene = s.world.mesh;
+  for (std::size_t i = 0; i < s.things.size(); ++i) {
+    append(s.things[i].mesh, s.thing_tracks[i].at(last_s), scene);
+  }
+  return scene;
+}
+
+const std::vector<ThingShape>& Simulation::things() const { return state_->things; }
 const World& Simulation::world() const { return state_->world; }
 const Scenario& Simulation::scenario() const { return state_->scenario; }
 

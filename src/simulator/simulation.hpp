@@ -12,6 +12,7 @@
 #include "simulator/imu.hpp"
 #include "simulator/legs.hpp"
 #include "simulator/scenario.hpp"
+#include "simulator/thing_track.hpp"
 #include "simulator/world.hpp"
 
 namespace pf::simulator {
@@ -34,6 +35,8 @@ struct SimulatedFrame {
   std::int64_t depth_stamp_ns = 0;
   RgbdFrame frame;  ///< stamp_ns is that of the colour image: the middle of its exposure
   cv::Mat mask;     ///< CV_8UC1 at the depth's moment: 0, or the id of the person
+  /// CV_8UC1 at the depth's moment: 0, or 1 + number of a thing that moves; empty: there are none.
+  cv::Mat thing_mask;
   std::vector<PersonTruth> people;  ///< those with a pixel or a joint in the picture
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< at stamp_ns
   Exposure exposure;
@@ -71,12 +74,19 @@ class Simulation {
   Trajectory truth(int frames) const;
   /// What happened in that time, cut to it; seconds since the start of the scenario.
   std::vector<Event> events(int frames) const;
+  /// What becomes of each thing in that time.
+  std::vector<std::vector<ThingChange>> thingChanges(int frames) const;
+  /// The poses of a thing in that time, T_world_thing: straight and even between two of them.
+  Trajectory thingPoses(std::size_t thing, int frames) const;
+  /// The still world with the things as they stand at the last of so many frames.
+  Mesh sceneAfter(int frames) const;
   /// Which rooms the camera is in, in that time. A doorway belongs to the room before it.
   std::vector<Visit> visits(int frames) const;
   /// What inertial sensor, legs and neck say in that time. They have random numbers of their own.
   Senses senses(int frames) const;
   std::int64_t stampOf(double time_s) const;
   const World& world() const;
+  const std::vector<ThingShape>& things() const;
   const Scenario& scenario() const;
 
  private:

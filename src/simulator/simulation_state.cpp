@@ -29,6 +29,12 @@ std::vector<Avatar> buildPeople(const Scenario& s) {
   return people;
 }
 
+std::vector<ThingShape> buildThings(const Scenario& s, World& world) {
+  std::vector<ThingShape> things;
+  for (const ThingSpec& thing : s.things) things.push_back(makeThing(world, thing.object));
+  return things;
+}
+
 std::unique_ptr<CameraPath> buildPath(const Scenario& s) {
   const std::uint32_t seed = hash(s.seed, 62U);
   if (s.robot) return makeRobot(*s.robot, s.start_s + s.duration_s + 1.0, seed);
@@ -46,17 +52,15 @@ Simulation::State::State(const Scenario& s)
     : world(buildWorld(s)),
       scenario(settled(s, world)),
       people(buildPeople(s)),
+      things(buildThings(s, world)),
       caster(world.mesh),
       lighting(world, caster),
       path(buildPath(scenario)),
-      crowd(
-          scenario.people, Walkway(world, kWalkClearance_m),
-          [this](double t) { return Eigen::Vector2d(path->at(t).translation().head<2>()); },
-          s.start_s + s.duration_s + 1.0),
+      crowd(play(thing_tracks)),
       renderer(world, caster),
       color_sensor(s.color),
       exposure(s.color),
-      shots{Shot(caster, people, s.color), Shot(caster, people, s.color)} {}
+      shots{Shot(caster, people, things, s.color), Shot(caster, people, things, s.color)} {}
 
 Simulation::State::Moments Simulation::State::momentsOf(int index, const Exposure& exposed) const {
   const double color = scenario.start_s + (index + 1) / scenario.fps;
@@ -96,6 +100,11 @@ double Simulation::State::limbSmearOf(const Moments& m) const {
     const double distance = std::max(0.5, (state.at - eye.head<2>()).norm());
     const double speed = 2.0 * state.speed_m_s + 0.6 * state.talk + 0.5 * state.reach;
     most = std::max(most, speed * 1e-3 * m.exposure.time_ms / distance * scenario.camera.fx);
+  }
+  for (const ThingTrack& track : thing_tracks) {
+    const double distance = std::max(0.5, (track.at(m.color).at_m - eye).norm());
+    const double moved = track.speed(m.color) * 1e-3 * m.exposure.time_ms;
+    most = std::max(most, moved / distance * scenario.camera.fx);
   }
   return most;
 }
@@ -139,24 +148,15 @@ Postures Simulation::State::posturesAt(double time) const {
 
 void Simulation::State::prepare(Shot& shot, const Moments& m) const {
   shot.moments.index = -1;  // until it is whole
-  const Postures middle = posturesAt(m.color);
+  const MoverPoses middle = posesAt(m.color);
   if (shot.in_color.moves()) {
-    shot.in_color.pose({posturesAt(m.first), posturesAt(m.last)});
+    shot.in_color.pose({posesAt(m.first), posesAt(m.last)});
   } else {
     shot.in_color.pose({middle});
   }
-  shot.in_depth.pose({posturesAt(m.depth)});
-  PeopleSurface& surface = shot.surface;
-  surface.positions.resize(people.size());
-  surface.normals.resize(people.size());
-  surface.places.clear();
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    surface.positions[i].resize(people[i].vertexCount());
-    people[i].skin(middle[i], surface.positions[i][0].data());
-    people[i].skinNormals(middle[i], surface.normals[i]);
-    surface.places.push_back(crowd.at(i, m.color).at.cast<float>());
-  }
-  lighting.illuminate(surface, shot.in_color, viewConeOf(m), shot.light);
+  shot.in_depth.pose({posesAt(m.depth)});
+  placeSurfaces(m, middle, shot.surfaces);
+  lighting.illuminate(shot.surfaces, shot.in_color, viewConeOf(m), shot.light);
   shot.moments = m;
 }
 
@@ -207,7 +207,8 @@ void Simulation::State::draw(const Shot& shot, SimulatedFrame& out) {
   const ViewSample depth_view = viewAt(path->at(m.depth), 0.0);
   renderer.depth(scenario.camera, depth_view, shot.in_depth, view);
   senseDepth({view, scenario.camera, scenario.depth, hash(scenario.seed, 75U, number), m.depth},
-             out.frame.depth, out.mask);
+             out.frame.depth, label);
+  labelMovers(m, label, out);
   observePeople(m, out);
 }
 

@@ -31,20 +31,22 @@ struct Simulation::State {
   Moments momentsOf(int index, const Exposure& exposure) const;
   bool isDropped(int index) const;
   double smearOf(const Moments& m) const;
-  double limbSmearOf(const Moments& m) const;  ///< of the people's hands and feet, at the most
+  double limbSmearOf(const Moments& m) const;  ///< of hands, feet and things, at the most
   int samplesFor(double smear_px) const;
   ViewCone viewConeOf(const Moments& m) const;
   Shutter shutterFor(const Moments& m, int samples) const;
 
-  /// A frame about to be taken: its people posed and lit.
+  /// A frame about to be taken: its people and things posed and lit.
   struct Shot {
-    Shot(const RayCaster& world, const std::vector<Avatar>& people, const ColorConfig& config)
-        : in_color(world, people, config.motion_blur || config.rolling_shutter_ms > 0.0 ? 2 : 1),
-          in_depth(world, people, 1) {}
+    Shot(const RayCaster& world, const std::vector<Avatar>& people,
+         const std::vector<ThingShape>& things, const ColorConfig& config)
+        : in_color(world, people, things,
+                   config.motion_blur || config.rolling_shutter_ms > 0.0 ? 2 : 1),
+          in_depth(world, people, things, 1) {}
 
     Moments moments;
-    PosedPeople in_color, in_depth;
-    PeopleSurface surface;
+    PosedMovers in_color, in_depth;
+    MoverSurfaces surfaces;
     FrameLight light;
   };
   /// The shot of this frame: the one prepared in the background, or prepared now.
@@ -55,24 +57,34 @@ struct Simulation::State {
   void forgetPrepared();
   void prepare(Shot& shot, const Moments& m) const;
   Postures posturesAt(double time) const;
+  MoverPoses posesAt(double time) const;
+  void placeSurfaces(const Moments& m, const MoverPoses& poses, MoverSurfaces& surfaces) const;
 
   /// Colour, depth and truth of the shot.
   void draw(const Shot& shot, SimulatedFrame& out);
   void observePeople(const Moments& m, SimulatedFrame& out) const;
+  /// Parts what the depth picture shows into people and things that move at its moment.
+  void labelMovers(const Moments& m, const cv::Mat& label, SimulatedFrame& out) const;
+  /// Lets people and things play their scripts.
+  Crowd play(std::vector<ThingTrack>& tracks) const;
+  /// What the camera has of things, for those that move when it looks, or looks away.
+  ThingWatch watch() const;
 
   World world;
   Scenario scenario;  // settled in that world
   std::vector<Avatar> people;
+  std::vector<ThingShape> things;
   RayCaster caster;
   Lighting lighting;
   std::unique_ptr<CameraPath> path;
+  std::vector<ThingTrack> thing_tracks;
   Crowd crowd;
   Renderer renderer;
   ColorSensor color_sensor;
   AutoExposure exposure;
   std::array<Shot, 2> shots;
   std::size_t current = 0;
-  cv::Mat radiance;
+  cv::Mat radiance, label;
   DepthView view;
   std::future<void> preparing;  // last: ends before what it works on
 };

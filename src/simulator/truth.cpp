@@ -48,11 +48,11 @@ PersonTruth observe(int person, const std::array<Eigen::Vector3f, kJointCount>& 
     truth.in_view[j] = true;
     const float surface = view.depth_m.at<float>(row, col);
     truth.visible[j] =
-        view.person.at<std::uint8_t>(row, col) == truth.id && surface > p.z() - depthUnderSkin(j);
+        view.label.at<std::uint8_t>(row, col) == truth.id && surface > p.z() - depthUnderSkin(j);
   }
-  for (int row = 0; row < view.person.rows; ++row) {
-    const auto* line = view.person.ptr<std::uint8_t>(row);
-    truth.pixels += static_cast<int>(std::count(line, line + view.person.cols, truth.id));
+  for (int row = 0; row < view.label.rows; ++row) {
+    const auto* line = view.label.ptr<std::uint8_t>(row);
+    truth.pixels += static_cast<int>(std::count(line, line + view.label.cols, truth.id));
   }
   return truth;
 }

@@ -9,6 +9,7 @@
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
+#include "simulator/thing_files.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -66,8 +67,8 @@ void putPoint(std::ostream& out, const pf::SurfacePoint& point) {
 }
 
 /// The surface's colour within a triangle.
-Eigen::Vector3f colorAt(const World& world, std::size_t triangle, float u, float v, float size_m) {
-  const Mesh& mesh = world.mesh;
+Eigen::Vector3f colorAt(const World& world, const Mesh& mesh, std::size_t triangle, float u,
+                        float v, float size_m) {
   const auto& t = mesh.triangles[triangle];
   const Material& m = world.materials[mesh.materials[triangle]];
   const Eigen::Vector2f uv = (1 - u - v) * mesh.uv[t[0]] + u * mesh.uv[t[1]] + v * mesh.uv[t[2]];
@@ -138,18 +139,20 @@ void saveEvents(const std::string& path, const Simulation& simulation,
     all["rooms"] = rooms;
     all["visits"] = visitsJson(simulation, static_cast<int>(frames.size()));
   }
+  if (!simulation.things().empty()) {
+    all["things"] = thingsJson(simulation, static_cast<int>(frames.size()));
+  }
   AtomicFile file(path);
   file.stream() << all.dump(1) << "\n";
   file.commit();
 }
 
-void saveSceneMesh(const std::string& path, const World& world) {
-  const Mesh& mesh = world.mesh;
+void saveSceneMesh(const std::string& path, const World& world, const Mesh& mesh) {
   std::vector<Eigen::Vector3f> colors(mesh.positions.size(), Eigen::Vector3f::Zero());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const float corner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
     for (std::size_t k = 0; k < 3; ++k) {
-      colors[mesh.triangles[t][k]] = colorAt(world, t, corner[k][0], corner[k][1], 0.02F);
+      colors[mesh.triangles[t][k]] = colorAt(world, mesh, t, corner[k][0], corner[k][1], 0.02F);
     }
   }
   AtomicFile file(path);
@@ -165,8 +168,8 @@ void saveSceneMesh(const std::string& path, const World& world) {
   file.commit();
 }
 
-void saveScenePoints(const std::string& path, const World& world, double spacing_m) {
-  const Mesh& mesh = world.mesh;
+void saveScenePoints(const std::string& path, const World& world, const Mesh& mesh,
+                     double spacing_m) {
   std::vector<pf::SurfacePoint> points;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
@@ -178,7 +181,7 @@ void saveScenePoints(const std::string& path, const World& world, double spacing
       for (int k = 0; i + k < n; ++k) {
         const float u = (i + 0.33F) / n, w = (k + 0.33F) / n;
         points.push_back(pointOf(a + u * ab + w * ac, mesh.normals[v[0]],
-                                 colorAt(world, t, u, w, static_cast<float>(spacing_m))));
+                                 colorAt(world, mesh, t, u, w, static_cast<float>(spacing_m))));
       }
     }
   }

@@ -22,14 +22,15 @@ FrameRecord recordOf(const SimulatedFrame& frame);
 void saveJoints(const std::string& path, const std::vector<FrameRecord>& frames);
 
 /// Falls, blurred and dropped frames, exposure, as JSON; where rooms have names, their places and
-/// when the camera was in them.
+/// when the camera was in them; where things may move, when they did.
 void saveEvents(const std::string& path, const Simulation& simulation,
                 const std::vector<FrameRecord>& frames);
 
-/// The static world as a triangle mesh (PLY), in the frame of the poses.
-void saveSceneMesh(const std::string& path, const World& world);
+/// A mesh with materials of the world (Simulation::sceneAfter()) as triangles (PLY).
+void saveSceneMesh(const std::string& path, const World& world, const Mesh& mesh);
 
-/// The static world as points about `spacing_m` apart (PLY), coloured.
-void saveScenePoints(const std::string& path, const World& world, double spacing_m);
+/// The same as points about `spacing_m` apart (PLY), coloured.
+void saveScenePoints(const std::string& path, const World& world, const Mesh& mesh,
+                     double spacing_m);
 
 }  // namespace pf::simulator

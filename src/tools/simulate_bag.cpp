@@ -25,6 +25,7 @@ constexpr char kColorInfo[] = "/camera/rgb/camera_info";
 constexpr char kDepth[] = "/camera/depth_registered/image_raw";
 constexpr char kDepthInfo[] = "/camera/depth_registered/camera_info";
 constexpr char kMask[] = "/truth/mask";
+constexpr char kThingMask[] = "/truth/thing_mask";
 constexpr char kEvents[] = "/truth/events";
 constexpr char kWorld[] = "world";
 
@@ -43,6 +44,9 @@ class BagOutput : public simulator::Output {
     bag_.write(kDepthInfo, toCameraInfo(frame.frame.camera, depth), depth);
     bag_.write(kDepth, *toDepthImage(frame.frame, depth), depth);
     bag_.write(kMask, *toImage(frame.mask, "mono8", color), color);
+    if (!frame.thing_mask.empty()) {
+      bag_.write(kThingMask, *toImage(frame.thing_mask, "mono8", color), color);
+    }
     bag_.write(bag_topics::kPeople, toMessage(simulator::asDetected(frame), color), color);
   }
 
