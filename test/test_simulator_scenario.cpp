@@ -42,7 +42,11 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
                            "corridor",
                            "corridor_light",
                            "stairs_fall",
-                           "stairs_fall_light"}) {
+                           "stairs_fall_light",
+                           "movers",
+                           "movers_light",
+                           "office_day",
+                           "office_day_light"}) {
     const Scenario s = loadScenario(name);
     EXPECT_FALSE(s.rooms.empty()) << name;
     EXPECT_TRUE(s.robot || s.hand_held) << name;
@@ -60,7 +64,7 @@ TEST(SimulatorScenario, AllScenariosOfThePackageLoad) {
 TEST(SimulatorScenario, PeopleOfThePackagesScenariosFindRoom) {
   // The others have the people and the rooms of one of these.
   for (const char* name : {"walking_static", "sitting_static", "loop_room", "hrpslam1", "crowd",
-                           "box_walker", "stairs_fall"}) {
+                           "box_walker", "stairs_fall", "movers", "office_day"}) {
     const Scenario s = loadScenario(name);
     World world;
     for (const auto& room : s.rooms) addRoom(world, room, 1U);

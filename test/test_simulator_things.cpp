@@ -89,6 +89,25 @@ TEST(SimulatorThings, ABentWayKeepsItsEndsAndItsCornersAreCut) {
   EXPECT_LT(sharpest, 0.5 * M_PI / 2.0 + 1e-9);
 }
 
+TEST(SimulatorThings, ThePackagesScenariosMoveEachThingAndEndAtRest) {
+  for (const char* name : {"movers_light", "office_day_light"}) {
+    const Scenario scenario = loadScenario(name);
+    const Simulation simulation(scenario);
+    const auto changes = simulation.thingChanges(simulation.frameCount());
+    std::size_t by_people = 0, all = 0;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      EXPECT_FALSE(changes[i].empty()) << name << " " << scenario.things[i].name;
+      for (const ThingChange& change : changes[i]) {
+        EXPECT_TRUE(change.is_over) << name << " " << scenario.things[i].name;
+        by_people += change.mover >= 0 ? 1 : 0;
+        ++all;
+      }
+    }
+    EXPECT_GE(by_people, 4U) << name;
+    EXPECT_GE(all - by_people, 4U) << name;
+  }
+}
+
 TEST(SimulatorThings, MistakesAreNamedWithTheirPlace) {
   const std::string room = "rooms: [{size_m: [4, 4, 2.5]}]\n";
   const std::string box = "{name: a, kind: box, at_m: [1, 1]}";
