@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "posefusion/core/trajectory.hpp"
+#include "posefusion/io/things_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "simulator/output.hpp"
 #include "simulator_things_scene.hpp"
@@ -142,6 +143,11 @@ TEST(SimulatorThingsMoved, TheFolderTellsOfTheThings) {
   EXPECT_EQ(door.at("moves").at(0).at("end"), "1002.500000");
   const Trajectory poses = loadTrajectory(path + "/things/3.txt");
   EXPECT_EQ(poses.front().stamp_ns, simulation.thingPoses(kDoor, 15).front().stamp_ns);
+  const auto recorded = loadThings(path);
+  ASSERT_EQ(recorded.size(), 5U);
+  ASSERT_EQ(recorded[kDoor].moves.size(), 1U);
+  EXPECT_EQ(recorded[kDoor].moves[0].begin_ns, poses[1].stamp_ns);
+  EXPECT_TRUE(recorded[kDoor].moves[0].to.isApprox(poses.back().T_world_camera, 1e-4));
   for (const char* name : {"/things/3.ply", "/things/room_points.ply", "/scene.ply"}) {
     EXPECT_TRUE(std::ifstream(path + name).good()) << name;
   }

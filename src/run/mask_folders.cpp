@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/run/mask_folders.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -105,6 +106,34 @@ MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_fo
     break;
   }
   return check;
+}
+
+ThingMaskScore checkThingMasks(const std::string& sequence, const std::string& run) {
+  const fs::path folder(sequence);
+  for (const char* part : {"mask", "thing_mask"}) {
+    if (!fs::is_directory(folder / part)) {
+      throw InputError((folder / part).string() + ": no such folder of masks");
+    }
+  }
+  const Masks people = listMasks(folder / "mask"), things = listMasks(folder / "thing_mask");
+  ThingMaskScore score;
+  double moving = 0, still = 0;
+  for (const auto& [stamp, path] : listMasks(maskFolderOf(run))) {
+    const auto person = people.find(stamp), thing = things.find(stamp);
+    if (person == people.end() || thing == things.end()) continue;
+    const cv::Mat mask = readMask(path) > 0, moves = readMask(thing->second) > 0;
+    if (mask.size() != moves.size()) throw InputError(path + ": of another size than the truth");
+    const cv::Mat stands = ~(moves | (readMask(person->second) > 0));
+    ++score.frames;
+    moving += cv::countNonZero(moves);
+    still += cv::countNonZero(stands);
+    score.masked_things += cv::countNonZero(mask & moves);
+    score.masked_still += cv::countNonZero(mask & stands);
+  }
+  if (score.frames == 0) throw InputError(run + ": no mask has a stamp of " + sequence);
+  score.masked_things /= std::max(1.0, moving);
+  score.masked_still /= std::max(1.0, still);
+  return score;
 }
 
 cv::Mat loadMask(const std::string& folder, std::int64_t stamp_ns) {

@@ -135,6 +135,18 @@ CommandLine* addSurfaceCommand(CommandLine& app, PairQuestion& question) {
   return command;
 }
 
+CommandLine* addThingsCommand(CommandLine& app, PairQuestion& question) {
+  auto* command = app.addCommand(
+      "things", "what a run's map and masks have of the things that moved in a simulated room");
+  command->addOption("run", question.checked, "output folder of posefusion_run")
+      ->required()
+      ->check(newest());
+  command->addOption("sequence", question.truth, "sequence with things/")->required();
+  command->addFlag("--json", question.json, "print JSON");
+  command->does([&question] { evaluateThings(question.checked, question.truth, question.json); });
+  return command;
+}
+
 /// `of`: words for what the first file is.
 CommandLine* addMadeCommand(CommandLine& app, const char* name, const char* of, const char* help,
                             SurfaceQuestion& question) {
@@ -186,7 +198,7 @@ int main(int argc, char** argv) {
   RunQuestion run;
   KnownQuestion known;
   SurfaceQuestion mesh, grid;
-  PairQuestion masks, covariance, surface, loops;
+  PairQuestion masks, covariance, surface, things, loops;
   const Option* estimate = addTrajectoryOptions(app, trajectory);
   const std::vector<const CommandLine*> commands = {addComparisonCommand(app, comparison),
                                                     addRunCommand(app, run),
@@ -194,6 +206,7 @@ int main(int argc, char** argv) {
                                                     addMasksCommand(app, masks),
                                                     addCovarianceCommand(app, covariance),
                                                     addSurfaceCommand(app, surface),
+                                                    addThingsCommand(app, things),
                                                     addMeshCommand(app, mesh),
                                                     addGridCommand(app, grid),
                                                     addLoopsCommand(app, loops)};

@@ -66,6 +66,8 @@ void evaluateMasks(const std::string& truth, const std::string& masks, bool json
 void evaluateCovariance(const std::string& truth, const std::string& status, bool json);
 /// posefusion_evaluate surface RUN_DIR SEQUENCE
 void evaluateSurface(const std::string& run, const std::string& sequence, bool json);
+/// posefusion_evaluate things RUN_DIR SEQUENCE
+void evaluateThings(const std::string& run, const std::string& sequence, bool json);
 /// posefusion_evaluate loops MAP_FILE TRUTH
 void evaluateLoops(const std::string& map, const std::string& truth, bool json);
 
