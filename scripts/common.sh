@@ -6,6 +6,8 @@ ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # Another python3 before the system's breaks catkin and ROS's tools.
 export PATH=/usr/bin:$PATH
+# The builds with and without ROS share what ccache has: precompiled headers lie in the folder of each.
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$ROOT}
 export ROS_HOSTNAME=${ROS_HOSTNAME:-localhost}
 
 say() { echo "posefusion: $*" >&2; }

@@ -16,8 +16,8 @@ constexpr double kStep_m = 1e-4;  // finer is noise
 ordered_json toJson(const Eigen::Vector3d& point) {
   if (!point.allFinite()) return nullptr;
   ordered_json numbers = ordered_json::array();
-  for (const double value : point) {
-    numbers.push_back(std::round(value / kStep_m) / std::round(1.0 / kStep_m));
+  for (int i = 0; i < 3; ++i) {  // Eigen 3.3 has no begin() of a vector
+    numbers.push_back(std::round(point[i] / kStep_m) / std::round(1.0 / kStep_m));
   }
   return numbers;
 }

@@ -18,8 +18,10 @@ std::size_t entriesOf(const char* folder) {
 std::size_t heapBytes() {
 #ifdef __SANITIZE_ADDRESS__
   return __sanitizer_get_current_allocated_bytes();
-#else
+#elif __GLIBC_PREREQ(2, 33)
   return mallinfo2().uordblks;
+#else
+  return static_cast<std::size_t>(mallinfo().uordblks);
 #endif
 }
 
