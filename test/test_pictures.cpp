@@ -74,7 +74,7 @@ TEST(MapPicture, ShowsTheMapFromThreeSides) {
         s.nz.back() = -1.0F;
         (front ? s.r : s.g).back() = 250.0F;
         s.radius.back() = 0.02F;
-        s.confidence.back() = 100.0F;
+        s.odds.back() = static_odds::kMost;
       }
     }
   }
@@ -87,6 +87,9 @@ TEST(MapPicture, ShowsTheMapFromThreeSides) {
   EXPECT_GT(countColor(last, {250, 0, 0}), 640 * 480 / 2) << "the wall fills the last view";
   EXPECT_GT(countColor(picture.colRange(640, 1280), {250, 0, 0}), 2000);
   EXPECT_TRUE(drawMap(SurfelMap{MapConfig{}}, still, camera).empty());
+  SurfelMap elsewhere{MapConfig{}};
+  elsewhere.add(s, kFirstFragment + 1);
+  EXPECT_TRUE(drawMap(elsewhere, still, camera).empty()) << "the first fragment has no stable one";
 }
 
 TEST(Plot, ShowsTruthEstimateAndDifference) {

@@ -107,10 +107,10 @@ cv::Mat drawFromOutside(const SurfelMap& map, const Trajectory& trajectory,
 }  // namespace
 
 cv::Mat drawMap(const SurfelMap& map, const Trajectory& trajectory, const PinholeCamera& camera) {
-  if (map.stableCount() == 0 || trajectory.empty()) return {};
   SurfelMap stable = map;
   stable.removeFragments([](int fragment) { return fragment != kFirstFragment; });
   stable.removeIf([&](const SurfelArrays& s, std::size_t i) { return !map.isStable(s, i); });
+  if (stable.size() == 0 || trajectory.empty()) return {};
   const Eigen::AlignedBox3d box = boundsOf(stable.collect(), trajectory);
   const Eigen::Matrix3d first = trajectory.front().T_world_camera.linear();
   const Eigen::Vector3d ahead = first.col(2), down = first.col(1), right = first.col(0);
