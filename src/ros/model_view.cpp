@@ -41,6 +41,8 @@ ModelViewMsg::Ptr toMessage(const pf::ModelView& view, const std_msgs::Header& h
   message->camera = toCameraInfo(view.camera, header);
   message->fragment = static_cast<std::uint32_t>(view.fragment);
   Eigen::Map<RowMajor34>(message->map_from_camera.data()) = view.T_map_camera.matrix().topRows<3>();
+  Eigen::Map<RowMajor34>(message->map_from_uncorrected.data()) =
+      view.T_map_uncorrected.matrix().topRows<3>();
   if (view.T_world_map) {
     Eigen::Map<RowMajor34>(message->frame_from_map.data()) =
         view.T_world_map->matrix().topRows<3>();
@@ -58,6 +60,8 @@ pf::ModelView fromMessage(const ModelViewMsg::ConstPtr& message) {
   view.fragment = static_cast<int>(message->fragment);
   view.T_map_camera.matrix().topRows<3>() =
       Eigen::Map<const RowMajor34>(message->map_from_camera.data());
+  view.T_map_uncorrected.matrix().topRows<3>() =
+      Eigen::Map<const RowMajor34>(message->map_from_uncorrected.data());
   const Eigen::Map<const RowMajor34> frame_from_map(message->frame_from_map.data());
   if (!frame_from_map.isZero(0)) {
     view.T_world_map = Eigen::Isometry3d::Identity();

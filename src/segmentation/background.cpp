@@ -90,7 +90,7 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
 Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t stamp_ns) {
   if (frames_ == 0 || view.stamp_ns != newest_.stamp_ns) {
     before_ = newest_;
-    newest_ = {view.stamp_ns, {view.fragment, view.T_map_camera}};
+    newest_ = {view.stamp_ns, {view.fragment, view.T_uncorrected_camera()}};
     ++frames_;
   }
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();

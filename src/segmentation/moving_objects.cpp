@@ -77,12 +77,12 @@ void MovingObjects::carryObjects(const MovingScene& scene) {
   const SceneGrid& grid = scene.grid;
   const PinholeCamera camera = scene.camera.shrunk(grid.step);
   const double elapsed_s = secondsBetween(last_ns_, scene.stamp_ns);
-  const Eigen::Isometry3d T_camera_map = scene.T_map_camera.inverse();
+  const Eigen::Isometry3d T_camera_uncorrected = scene.T_uncorrected_camera.inverse();
   carried_.assign(grid.size(), -1);
   for (std::size_t k = 0; k < objects_.size(); ++k) {
     const Eigen::Vector3d shift = objects_[k].object.velocity_m_s * elapsed_s;
     for (const Eigen::Vector3f& point : objects_[k].object.points_m) {
-      const Eigen::Vector3d p = T_camera_map * (point.cast<double>() + shift);
+      const Eigen::Vector3d p = T_camera_uncorrected * (point.cast<double>() + shift);
       if (p.z() <= 0) continue;
       const Eigen::Vector2d pixel = camera.project(p);
       const int u = cvRound(pixel.x()), v = cvRound(pixel.y());
@@ -174,7 +174,7 @@ void MovingObjects::place(const MovingScene& scene, double elapsed_s, Piece& pie
   object.cells = std::move(piece.cells);
   std::vector<Eigen::Vector3f> points_m;
   for (const int cell : object.cells) {
-    const Eigen::Vector3d p = scene.T_map_camera * scene.grid.point(cell).cast<double>();
+    const Eigen::Vector3d p = scene.T_uncorrected_camera * scene.grid.point(cell).cast<double>();
     points_m.emplace_back(p.cast<float>());
   }
   object.object.placeAt(std::move(points_m), elapsed_s);
@@ -216,7 +216,7 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
 
 std::vector<MovingObject> MovingObjects::find(const MovingScene& scene) {
   before_.know(scene.view);
-  before_.compare(scene.grid, scene.T_map_camera, scene.stamp_ns, sensor_);
+  before_.compare(scene.grid, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
   const double elapsed_s = std::max(0.0, secondsBetween(last_ns_, scene.stamp_ns));
   findSeeds(scene);
   carryObjects(scene);

@@ -45,10 +45,10 @@ SkeletonPoints liftSkeleton(const Person& person, const std::vector<int>& cells,
 
 std::vector<MovingObject> PeopleInMap::place(const std::vector<TrackedPerson>& people,
                                              const SceneGrid& grid,
-                                             const Eigen::Isometry3d& T_map_camera,
+                                             const Eigen::Isometry3d& T_uncorrected_camera,
                                              std::int64_t stamp_ns) {
   const double elapsed_s = secondsBetween(last_ns_, stamp_ns);
-  const Eigen::Isometry3f T = T_map_camera.cast<float>();
+  const Eigen::Isometry3f T = T_uncorrected_camera.cast<float>();
   std::vector<MovingObject> placed;
   for (const TrackedPerson& tracked : people) {
     std::vector<Eigen::Vector3f> points_m;

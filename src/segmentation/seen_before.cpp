@@ -46,7 +46,7 @@ void SeenBefore::know(const ModelView& view) {
   fragment_ = view.fragment;
   for (Moment& moment : kept_) {
     if (moment.view.stamp_ns != view.stamp_ns) continue;
-    moment.view.T_map_camera = view.T_map_camera;
+    moment.view.T_map_camera = view.T_uncorrected_camera();
     moment.is_located = true;
   }
 }
@@ -63,7 +63,7 @@ const SeenBefore::Moment* SeenBefore::nearestTo(std::int64_t stamp_ns) const {
   return nearest;
 }
 
-void SeenBefore::compare(const SceneGrid& grid, const Eigen::Isometry3d& T_map_camera,
+void SeenBefore::compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,
                          std::int64_t stamp_ns, const DepthSensor& sensor) {
   for (std::size_t i = 0; i < kAges_s.size(); ++i) {
     const auto age_ns = static_cast<std::int64_t>(kAges_s[i] * 1e9);
@@ -72,7 +72,8 @@ void SeenBefore::compare(const SceneGrid& grid, const Eigen::Isometry3d& T_map_c
       moments_[i].assign(grid.size(), Background::unknown);
       continue;
     }
-    const Eigen::Isometry3d T_view_camera = moment->view.T_map_camera.inverse() * T_map_camera;
+    const Eigen::Isometry3d T_view_camera =
+        moment->view.T_map_camera.inverse() * T_uncorrected_camera;
     compareWithModel(grid, moment->view, T_view_camera, sensor, moments_[i]);
   }
 }

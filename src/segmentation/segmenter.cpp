@@ -13,10 +13,14 @@ namespace pf {
 
 namespace {
 
-/// Where the place of the map is known to those who use it.
+/// `objects`: in uncorrected coordinates. Told where the place of the map is known to those who use
+/// it.
 void tell(const ModelView& view, const std::vector<MovingObject>& objects, Segmentation& result) {
   if (view.fragment != kFirstFragment || !view.T_world_map) return;
-  for (const MovingObject& object : objects) result.moving.push_back(object.in(*view.T_world_map));
+  const Eigen::Isometry3d T_world_uncorrected = *view.T_world_map * view.T_map_uncorrected;
+  for (const MovingObject& object : objects) {
+    result.moving.push_back(object.in(T_world_uncorrected));
+  }
 }
 
 }  // namespace
@@ -56,24 +60,26 @@ void PeopleSegmenter::keepPeople(const RgbdFrame& frame, bool with_map, Segmenta
 
 /// Adds to `taken` the cells of what moves beside the people.
 void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
-                                  const Eigen::Isometry3d& T_map_camera,
+                                  const Eigen::Isometry3d& T_uncorrected_camera,
                                   std::vector<std::uint8_t>& taken, Segmentation& result) {
   State& s = *state_;
   if (view == nullptr || !config_.moving_objects) return s.objects.reset();
   const std::vector<MovingObject> objects =
-      s.objects.find({s.evidence.grid, frame.camera, *view, T_map_camera, s.evidence.background,
-                      s.labels, frame.stamp_ns, s.worth});
+      s.objects.find({s.evidence.grid, frame.camera, *view, T_uncorrected_camera,
+                      s.evidence.background, s.labels, frame.stamp_ns, s.worth});
   for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
   tell(*view, objects, result);
 }
 
 /// After keepPeople(): the cells are those of this frame's mask.
-void PeopleSegmenter::placePeople(const ModelView* view, const Eigen::Isometry3d& T_map_camera,
+void PeopleSegmenter::placePeople(const ModelView* view,
+                                  const Eigen::Isometry3d& T_uncorrected_camera,
                                   Segmentation& result) {
   State& s = *state_;
   if (view == nullptr || view->fragment != kFirstFragment) return s.people_in_map.reset();
   tell(*view,
-       s.people_in_map.place(s.people, s.evidence.grid, T_map_camera, result.people.stamp_ns),
+       s.people_in_map.place(s.people, s.evidence.grid, T_uncorrected_camera,
+                             result.people.stamp_ns),
        result);
 }
 
@@ -85,10 +91,10 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   s.worth = s.pace_meter.add(frame.stamp_ns).worth();
   Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_uncorrected_camera = Eigen::Isometry3d::Identity();
   if (background != nullptr) {
     T_view_camera = s.motion.predict(*background, frame.stamp_ns);
-    T_map_camera = background->T_map_camera * T_view_camera;
+    T_uncorrected_camera = background->T_uncorrected_camera() * T_view_camera;
   }
   if (!config_.enabled) return result;
   s.takeGrid(frame, config_.grid_width);
@@ -98,11 +104,11 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker&
   }
   const bool has_people = findPeople(frame, flow, people);
   std::vector<std::uint8_t> taken = s.labels;
-  findObjects(frame, background, T_map_camera, taken, result);
+  findObjects(frame, background, T_uncorrected_camera, taken, result);
   const bool is_empty = std::all_of(taken.begin(), taken.end(), [](auto t) { return t == 0; });
   if (has_people || !is_empty) s.takeOut(frame, taken, config_.margin_px, result);
   if (has_people) keepPeople(frame, background != nullptr, result);
-  placePeople(background, T_map_camera, result);
+  placePeople(background, T_uncorrected_camera, result);
   return result;
 }
 

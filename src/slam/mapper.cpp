@@ -199,6 +199,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.map.clear();
   s.T_world_map.reset();
   s.view = s.seen = ModelView();
+  s.T_map_uncorrected = Eigen::Isometry3d::Identity();
   s.constraints_are_old = s.calibration_is_asked = false;
   s.last_calibration.clear();
   s.localiser.reset();

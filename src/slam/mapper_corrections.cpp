@@ -137,6 +137,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
   }
   if (isPlaceKnown()) reckoning.correct(T_new_old);
   localiser.move(T_new_old, where);
+  T_map_uncorrected = orthonormalised(T_new_old * T_map_uncorrected);
   moveView({where, T_new_old * view.T_map_camera});
   keyframes_moved = true;
   map_at_loss.reset();
@@ -148,6 +149,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
 void Mapper::State::moveView(const MapPose& pose) {
   if (view.stamp_ns != last_stamp_ns) return showFrom(pose, false);
   view.T_map_camera = seen.T_map_camera = pose.T_map_camera;
+  view.T_map_uncorrected = seen.T_map_uncorrected = T_map_uncorrected;
   view.fragment = seen.fragment = pose.fragment;
 }
 

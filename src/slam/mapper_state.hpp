@@ -87,6 +87,8 @@ struct Mapper::State {
   std::string last_calibration;
   DepthCorrector distorter{DepthField()};  ///< the other way round
   ModelView seen;                          ///< `view` with the camera's own error
+  /// All corrections so far, see ModelView.
+  Eigen::Isometry3d T_map_uncorrected = Eigen::Isometry3d::Identity();
 
   // Of corrections.
   WantedCorrection wanted;

@@ -47,6 +47,7 @@ const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
 void Mapper::State::showFrom(const MapPose& pose, bool fill) {
   renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment), view);
   model.assign(view, sensor, fill ? &frame.levels[0] : nullptr);
+  view.T_map_uncorrected = T_map_uncorrected;
   seen = view;
   seen.T_world_map = worldFromMap().value_or(bodyFromOptical());
   if (calibration) seen.depth_m = distorter.inMetres(view.depth_m, 1.0);

@@ -132,6 +132,7 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   view.camera.cy = 1.25;
   view.fragment = 2;
   view.T_map_camera.translation() << 0.1, 0.2, 0.3;
+  view.T_map_uncorrected.translation() << 0.4, 0.5, 0.6;
   view.depth_m = cv::Mat(3, 4, CV_32FC1, cv::Scalar(1.5));
   view.depth_m.at<float>(2, 3) = 10;
   view.stable = cv::Mat(3, 4, CV_8UC1, cv::Scalar(255));
@@ -141,6 +142,7 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   EXPECT_TRUE(read.camera == view.camera);
   EXPECT_EQ(read.fragment, 2);
   EXPECT_TRUE(read.T_map_camera.matrix() == view.T_map_camera.matrix());
+  EXPECT_TRUE(read.T_map_uncorrected.matrix() == view.T_map_uncorrected.matrix());
   EXPECT_FALSE(read.T_world_map) << "not known yet";
   view.T_world_map = Eigen::Translation3d(1, 2, 3) * Eigen::Isometry3d::Identity();
   const pf::ModelView placed = fromMessage(toMessage(view, std_msgs::Header()));

@@ -17,6 +17,9 @@ struct ModelView {
   PinholeCamera camera;
   int fragment = kFirstFragment;  ///< of the map, that is seen
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+  /// Corrections move the map, and the camera with it. From coordinates in which they move neither,
+  /// to the map's: only the camera's own motion is in T_uncorrected_camera().
+  Eigen::Isometry3d T_map_uncorrected = Eigen::Isometry3d::Identity();
   /// From the map's coordinates to the frame of those who use it, as far as known.
   std::optional<Eigen::Isometry3d> T_world_map{};
   cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing
@@ -24,11 +27,14 @@ struct ModelView {
   cv::Mat normal_y;   ///< CV_32FC1
   cv::Mat normal_z;   ///< CV_32FC1
   cv::Mat intensity;  ///< CV_32FC1, 0..255
-  cv::Mat support;    ///< CV_32FC1, confidence of the surfel: frames that supported it
+  cv::Mat odds;       ///< CV_32FC1, that the surfel stands still (nats), see static_odds
   cv::Mat color;      ///< CV_8UC3 R G B; empty unless asked for
   cv::Mat stable;     ///< CV_8UC1, 1 = a stable surfel; empty: not known
 
   bool empty() const { return depth_m.empty(); }
+  Eigen::Isometry3d T_uncorrected_camera() const {
+    return T_map_uncorrected.inverse() * T_map_camera;
+  }
 };
 
 }  // namespace pf

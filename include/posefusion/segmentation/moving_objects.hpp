@@ -13,11 +13,11 @@ namespace pf {
 /// What is known of a frame when its moving objects are looked for.
 struct MovingScene {
   const SceneGrid& grid;
-  const PinholeCamera& camera;                 ///< of the frame
-  const ModelView& view;                       ///< the map from the last trusted pose
-  const Eigen::Isometry3d& T_map_camera;       ///< of the frame, as far as known
-  const std::vector<Background>& background;   ///< what the map says of the cells
-  const std::vector<std::uint8_t>& is_person;  ///< cells that are taken out anyway
+  const PinholeCamera& camera;                    ///< of the frame
+  const ModelView& view;                          ///< the map from the last trusted pose
+  const Eigen::Isometry3d& T_uncorrected_camera;  ///< of the frame, as far as known
+  const std::vector<Background>& background;      ///< what the map says of the cells
+  const std::vector<std::uint8_t>& is_person;     ///< cells that are taken out anyway
   std::int64_t stamp_ns;
   float worth;  ///< of the frame, see Pace
 };
@@ -32,7 +32,8 @@ class MovingObjects {
   explicit MovingObjects(const DepthSensor& sensor);
   ~MovingObjects();
 
-  /// The objects seen in the frame, those at rest for a moment among them.
+  /// The objects seen in the frame, those at rest for a moment among them, in uncorrected
+  /// coordinates (see ModelView).
   std::vector<MovingObject> find(const MovingScene& scene);
 
   /// 1 = a cell of an object that moves, as of the last find().

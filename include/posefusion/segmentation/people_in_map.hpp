@@ -19,10 +19,11 @@ SkeletonPoints liftSkeleton(const Person& person, const std::vector<int>& cells,
 /// Places people in the map, and follows their velocity. Not thread safe.
 class PeopleInMap {
  public:
-  /// The people who are seen, those with cells, in the frame of the map. `T_map_camera`: of the
-  /// frame, as far as known.
+  /// The people who are seen, those with cells, in uncorrected coordinates (see ModelView).
+  /// `T_uncorrected_camera`: of the frame, as far as known.
   std::vector<MovingObject> place(const std::vector<TrackedPerson>& people, const SceneGrid& grid,
-                                  const Eigen::Isometry3d& T_map_camera, std::int64_t stamp_ns);
+                                  const Eigen::Isometry3d& T_uncorrected_camera,
+                                  std::int64_t stamp_ns);
 
   /// Nothing is known of the camera's place.
   void reset() { last_.clear(); }

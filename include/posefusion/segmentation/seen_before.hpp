@@ -27,11 +27,11 @@ class SeenBefore {
   /// A view has the pose of the frame whose stamp it has. In another fragment all is forgotten.
   void know(const ModelView& view);
 
-  /// What each moment says of the cells of a frame at `stamp_ns`, seen from T_map_camera:
+  /// What each moment says of the cells of a frame at `stamp_ns`, seen from T_uncorrected_camera:
   /// `nearer` = the place was seen to be empty, `agrees` = the same surface was there, `farther` =
   /// something stood before it. Where there is no such moment all are unknown.
-  void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_map_camera, std::int64_t stamp_ns,
-               const DepthSensor& sensor);
+  void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,
+               std::int64_t stamp_ns, const DepthSensor& sensor);
 
   /// By moment, cell by cell; as of the last compare().
   const std::array<std::vector<Background>, kAges_s.size()>& moments() const { return moments_; }
@@ -43,7 +43,7 @@ class SeenBefore {
 
  private:
   struct Moment {
-    ModelView view;  ///< depth, pose and stamp alone
+    ModelView view;  ///< depth, uncorrected pose and stamp alone
     bool is_located = false;
   };
 

@@ -63,9 +63,9 @@ class PeopleSegmenter {
   bool findPeople(const RgbdFrame& frame, const FlowTracker& flow, const People& people);
   void keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result);
   void findObjects(const RgbdFrame& frame, const ModelView* view,
-                   const Eigen::Isometry3d& T_map_camera, std::vector<std::uint8_t>& taken,
+                   const Eigen::Isometry3d& T_uncorrected_camera, std::vector<std::uint8_t>& taken,
                    Segmentation& result);
-  void placePeople(const ModelView* view, const Eigen::Isometry3d& T_map_camera,
+  void placePeople(const ModelView* view, const Eigen::Isometry3d& T_uncorrected_camera,
                    Segmentation& result);
   Segmentation segmentAsThePaper(const RgbdFrame& frame, const People& people,
                                  const std::optional<Eigen::Vector3d>& up_camera);
