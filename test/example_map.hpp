@@ -24,7 +24,8 @@ struct ExampleMap {
       s.nz[i] = -1.0F;
       s.r[i] = s.g[i] = s.b[i] = static_cast<float>(i % 256);
       s.radius[i] = 0.02F;
-      s.weight[i] = s.confidence[i] = 20;
+      s.weight[i] = 20;
+      s.odds[i] = 20 * static_odds::kFrame;
       s.created[i] = s.seen[i] = static_cast<std::int32_t>(i / 400);
     }
     map.restore({{kFirstFragment, s}}, 9);

@@ -20,7 +20,7 @@ struct MappedRoom {
 
   static MapConfig stableAtOnce() {
     MapConfig config;
-    config.stable_confidence = 2;
+    config.stable_probability = 0.57;  // two frames
     return config;
   }
 

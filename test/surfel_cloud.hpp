@@ -32,7 +32,8 @@ inline SurfelArrays cloud(std::size_t count, float side_m, int seed = 3) {
     s.nz[i] = n.z();
     s.r[i] = s.g[i] = s.b[i] = static_cast<float>(i % 256);
     s.radius[i] = 0.01F + 0.02F * static_cast<float>(i % 7);
-    s.weight[i] = s.confidence[i] = 50;
+    s.weight[i] = 50;
+    s.odds[i] = static_odds::kMost;
   }
   return s;
 }
@@ -62,14 +63,13 @@ inline WorkingFrame noisyFrame(int i) {
   return working;
 }
 
-using Row = std::tuple<float, float, float, float, float, float, float, int, int>;
+using Row = std::tuple<float, float, float, float, float, float, float, int>;
 
 /// The surfels without their order.
 inline std::multiset<Row> rowsOf(const SurfelArrays& s) {
   std::multiset<Row> rows;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    rows.emplace(s.x[i], s.y[i], s.z[i], s.nx[i], s.r[i], s.weight[i], s.confidence[i], s.seen[i],
-                 s.violations[i]);
+    rows.emplace(s.x[i], s.y[i], s.z[i], s.nx[i], s.r[i], s.weight[i], s.odds[i], s.seen[i]);
   }
   return rows;
 }

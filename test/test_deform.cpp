@@ -36,7 +36,8 @@ SurfelArrays wall() {
     s.nx[i] = n.x(), s.ny[i] = n.y(), s.nz[i] = n.z();
     s.r[i] = s.g[i] = s.b[i] = static_cast<float>(i % 200);
     s.radius[i] = 0.02F;
-    s.weight[i] = s.confidence[i] = 50;
+    s.weight[i] = 50;
+    s.odds[i] = static_odds::kMost;
     s.created[i] = static_cast<std::int32_t>(i * kFrames / s.size());
     s.seen[i] = kFrames - 1;
   }

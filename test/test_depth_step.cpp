@@ -29,7 +29,7 @@ SurfelArrays wallSeen(const Eigen::Isometry3d& T, const DepthField& error, int c
       s.x[i] = p.x(), s.y[i] = p.y(), s.z[i] = p.z();
       s.nx[i] = n.x(), s.ny[i] = n.y(), s.nz[i] = n.z();
       s.radius[i] = 0.02F;
-      s.confidence[i] = 50;
+      s.odds[i] = static_odds::kMost;
       s.created[i] = created;
     }
   }

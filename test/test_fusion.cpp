@@ -38,7 +38,7 @@ TEST(Fuser, TheSameViewAgainAddsSupportAndNoSurfels) {
   const std::size_t size = map.size();
   for (int i = 0; i < 9; ++i) EXPECT_EQ(fuser.fuse(scene(2.0), kIdentity, map).inserted, 0U);
   EXPECT_EQ(map.size(), size);
-  EXPECT_EQ(map.collect().confidence[100], 10);
+  EXPECT_NEAR(map.collect().odds[100], 10 * static_odds::kFrame, 1e-5);
   EXPECT_EQ(map.stableCount(), size);
 }
 
@@ -130,7 +130,7 @@ TEST(Fuser, GivesTheSameBitsForAnyNumberOfThreads) {
   const SurfelArrays a = maps[0].collect(), b = maps[1].collect();
   EXPECT_EQ(a.z, b.z);
   EXPECT_EQ(a.nx, b.nx);
-  EXPECT_EQ(a.confidence, b.confidence);
+  EXPECT_EQ(a.odds, b.odds);
 }
 
 }  // namespace

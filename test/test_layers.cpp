@@ -12,7 +12,7 @@ namespace {
 constexpr int kSide = 40;
 
 /// Adds a wall z = `z` of kSide x kSide surfels a centimetre apart, made in one frame.
-void addWall(SurfelArrays& s, float z, int created, bool away = false, float confidence = 20) {
+void addWall(SurfelArrays& s, float z, int created, bool away = false, float frames = 20) {
   for (int k = 0; k < kSide * kSide; ++k) {
     s.forEachArray([](auto& array) { array.push_back(0); });
     s.x.back() = 0.01F * static_cast<float>(k % kSide);
@@ -20,7 +20,7 @@ void addWall(SurfelArrays& s, float z, int created, bool away = false, float con
     s.z.back() = z;
     s.nz.back() = away ? 1.0F : -1.0F;
     s.radius.back() = 0.008F;
-    s.confidence.back() = confidence;
+    s.odds.back() = frames * static_odds::kFrame;
     s.created.back() = created;
   }
 }
@@ -96,9 +96,9 @@ TEST(Layers, WhatReachesBeyondTheOlderStays) {
 }
 
 TEST(Layers, NoiseOtherSurfacesAndUnstableSurfelsStay) {
-  const auto stays = [](float apart, bool away, float older_confidence) {
+  const auto stays = [](float apart, bool away, float older_frames) {
     SurfelArrays surfels;
-    addWall(surfels, 2.0F, 10, false, older_confidence);
+    addWall(surfels, 2.0F, 10, false, older_frames);
     addWall(surfels, 2.0F + apart, 500, away);
     return left(surfels).size() == surfels.size();
   };

@@ -27,7 +27,7 @@ void addWall(SurfelArrays& s, const cv::Rect& area, double z) {
       s.z.back() = p.z();
       s.nz.back() = -1.0F;
       s.radius.back() = static_cast<float>(1.5 * z / camera().fx);
-      s.confidence.back() = 100.0F;
+      s.odds.back() = static_odds::kMost;
     }
   }
 }

@@ -53,9 +53,9 @@ TEST(MapDatabase, RefusesWhatAMapCannotHold) {
   const auto said = [](const std::string& error, const std::string& text) {
     return error.find(text) != std::string::npos;
   };
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=4"), "a newer posefusion made it"));
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=1"), "other tables")) << "those of version 3";
-  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=0"), "a map of version 0, expected 1 to 3"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=5"), "a newer posefusion made it"));
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=1"), "other tables")) << "those of the latest";
+  EXPECT_TRUE(said(errorAfter("PRAGMA user_version=0"), "a map of version 0, expected 1 to 4"));
   EXPECT_TRUE(
       said(errorAfter("UPDATE blocks SET fragment=-1 WHERE id=2"), "block 2 is of fragment"));
   EXPECT_TRUE(said(errorAfter("UPDATE keyframes SET fragment=7 WHERE id=1"), "fragment is 7"));
@@ -112,12 +112,12 @@ TEST(MapDatabase, RefusesSurfelsThatCannotBe) {
   s.x[5] = 3e8F;
   EXPECT_NE(error("f").find("the place of a surfel"), std::string::npos);
   s.x[5] = 0;
-  for (const std::int32_t violations : {std::numeric_limits<std::int32_t>::min(), 2'000'000'000}) {
-    s.violations[4] = violations;
-    EXPECT_NE(error("g" + std::to_string(violations)).find("the violations of a surfel"),
-              std::string::npos);
+  const float odds = s.odds[4];
+  for (const float none : {-1e3F, 4.0F}) {
+    s.odds[4] = none;
+    EXPECT_NE(error("g" + std::to_string(none)).find("the odds of a surfel"), std::string::npos);
   }
-  s.violations[4] = 0;
+  s.odds[4] = odds;
   EXPECT_EQ(error("whole"), "");
 }
 

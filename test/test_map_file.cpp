@@ -19,7 +19,7 @@ SurfelArrays surfelsOf(std::size_t count) {
     array.resize(count);
     for (auto& x : array) x = static_cast<std::decay_t<decltype(x)>>(value += 0.37F);
   });
-  surfels.confidence.assign(count, 100.0F);
+  surfels.odds.assign(count, static_odds::kMost);
   return surfels;
 }
 
@@ -47,7 +47,7 @@ TEST(MapFile, LiesInTheFrameThatIsAskedFor) {
 TEST(MapFile, ReadsBackTheStableSurfels) {
   TemporaryFolder folder;
   SurfelArrays surfels = surfelsOf(10);
-  surfels.confidence[3] = 0.5F;
+  surfels.odds[3] = 0.5F;
   surfels.r[4] = 300.0F;
   surfels.g[4] = -5.0F;
   EXPECT_EQ(saveMap(folder / "m.ply", mapOf(surfels)), 9U);
@@ -57,7 +57,7 @@ TEST(MapFile, ReadsBackTheStableSurfels) {
   EXPECT_EQ(read.x[3], surfels.x[4]) << "the unstable one is left out";
   EXPECT_EQ(read.nz[8], surfels.nz[9]);
   EXPECT_EQ(read.radius[8], surfels.radius[9]);
-  EXPECT_EQ(read.confidence[8], 100.0F);
+  EXPECT_NEAR(read.odds[8], static_odds::kMost, 1e-4);
   EXPECT_EQ(read.b[0], std::round(surfels.b[0]));
   EXPECT_EQ(read.r[3], 255.0F);
   EXPECT_EQ(read.g[3], 0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Map files of version 1, where fragment k lay at x = 500 m * k.
+// Map files of version 1, where fragment k lay at x = 500 m * k, and of those before the present.
 #include <gtest/gtest.h>
 
 #include "example_map.hpp"
@@ -143,6 +143,40 @@ TEST(MapUpgrade, AFileOfVersion2GoesOnAndHasRetiredKeyframesFromThenOn) {
   EXPECT_EQ(reader.content().keyframes[1].follows, 0);
   EXPECT_EQ(reader.counts().images, 1U) << "its pictures are gone";
   EXPECT_FALSE(reader.images(0).grey.empty());
+}
+
+TEST(MapUpgrade, SurfelsOfVersion3HaveOddsInPlaceOfFrames) {
+  const TemporaryFolder folder;
+  const ExampleMap example;
+  const std::string path = pf::saved(folder, example.update, "old.pfdb");
+  makeThirdVersion(path);
+  const auto expectOdds = [&] {
+    const SurfelArrays surfels = MapReader(path).surfels().front().surfels;
+    ASSERT_EQ(surfels.size(), example.map.size());
+    for (const float odds : surfels.odds) ASSERT_NEAR(odds, 20 * static_odds::kFrame, 1e-5);
+  };
+  expectOdds();
+  const MapUpdate update = everythingIn(MapReader(path));
+  MapWriter(path, MapWriter::Mode::extend).write(update);
+  expectOdds();
+  EXPECT_EQ(MapReader(path).counts().images, 2U);
+}
+
+TEST(MapUpgrade, WhatContradictedASurfelOfVersion3LowersItsOdds) {
+  std::string bytes = thirdVersionOf(encode([] {
+    SurfelArrays s;
+    s.resize(3);
+    for (float* value : {s.nz.data(), s.radius.data()}) std::fill(value, value + 3, 1.0F);
+    s.odds = {static_odds::kMost, static_odds::kMost, static_odds::kNewcomer};
+    return s;
+  }()));
+  const std::array<std::int32_t, 3> violations = {0, 10, 40};
+  std::memcpy(bytes.data() + bytes.size() - sizeof violations, violations.data(),
+              sizeof violations);
+  const SurfelArrays read = decodeSurfels(bytes, 3, 0);
+  EXPECT_FLOAT_EQ(read.odds[0], static_odds::kMost);
+  EXPECT_NEAR(read.odds[1], 14 * static_odds::kFrame, 1e-5);
+  EXPECT_EQ(read.odds[2], static_odds::kGone);
 }
 
 TEST(MapUpgrade, AFileOfVersion1WithOtherTablesIsRefused) {

@@ -200,7 +200,7 @@ TEST_F(MapperTest, GivesTheSameBitsForAnyNumberOfThreads) {
   }
   EXPECT_TRUE(mappers[0].view().T_map_camera.matrix() == mappers[1].view().T_map_camera.matrix());
   EXPECT_EQ(mappers[0].map().collect().x, mappers[1].map().collect().x);
-  EXPECT_EQ(mappers[0].map().collect().confidence, mappers[1].map().collect().confidence);
+  EXPECT_EQ(mappers[0].map().collect().odds, mappers[1].map().collect().odds);
 }
 
 TEST_F(MapperTest, RenderedDepthAgreesWithTheTruth) {

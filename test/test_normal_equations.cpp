@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
@@ -42,7 +43,7 @@ struct Scene {
     planes.normal[1] = frame.normal_y;
     planes.normal[2] = frame.normal_z;
     planes.intensity = frame.intensity;
-    planes.support = cv::Mat(size, CV_32FC1, cv::Scalar(100));
+    planes.odds = cv::Mat(size, CV_32FC1, cv::Scalar(static_odds::kMost));
     model.assign(camera, planes);
   }
 };
@@ -179,7 +180,7 @@ TEST(NormalEquations, OfNothingAreZero) {
   ModelPoints nothing;
   ModelPlanes planes;
   for (cv::Mat* plane : {&planes.depth_m, &planes.normal[0], &planes.normal[1], &planes.normal[2],
-                         &planes.intensity, &planes.support}) {
+                         &planes.intensity, &planes.odds}) {
     *plane = cv::Mat::zeros(72, 96, CV_32FC1);
   }
   nothing.assign(scene.frame.camera, planes);

@@ -158,7 +158,8 @@ TEST(LoopWorker, LooksInEachFragmentByItself) {
     wall.z[i] = 0.7F;
     wall.nz[i] = -1.0F;
     wall.radius[i] = 0.05F;
-    wall.weight[i] = wall.confidence[i] = 50;
+    wall.weight[i] = 50;
+    wall.odds[i] = static_odds::kMost;
     wall.created[i] = wall.seen[i] = map->frame();
   }
   map->add(wall, 0);

@@ -19,7 +19,7 @@ void saveSmallMap(const std::string& path) {
     s.ny[i] = -1;
     s.r[i] = 200;
     s.b[i] = 10;
-    s.confidence[i] = 100;
+    s.odds[i] = static_odds::kMost;
   }
   SurfelMap map(MapConfig{}, 1000.0F);  // all in one block, so that their order stays
   map.add(s);

@@ -14,7 +14,7 @@ namespace {
 
 struct Disc {
   Eigen::Vector3f position, normal{0, 0, -1};
-  float radius = 0.02F, confidence = 100, grey = 100;
+  float radius = 0.02F, odds = 3, grey = 100;
 };
 
 void add(SurfelMap& map, const Disc& d) {
@@ -29,7 +29,7 @@ void add(SurfelMap& map, const Disc& d) {
   s.nz[i] = d.normal.z();
   s.r[i] = s.g[i] = s.b[i] = d.grey;
   s.radius[i] = d.radius;
-  s.confidence[i] = d.confidence;
+  s.odds[i] = d.odds;
   map.add(s);
 }
 

@@ -167,7 +167,7 @@ TEST(SurfelMap, RemovingKeepsTheOrderOfTheOthers) {
   EXPECT_EQ(map.removeIf([](const SurfelArrays& s, std::size_t i) { return s.seen[i] % 3 == 0; }),
             2U);
   EXPECT_EQ(map.collect().seen, (std::vector<std::int32_t>{1, 2, 4}));
-  EXPECT_EQ(map.collect().violations.size(), 3U);
+  EXPECT_EQ(map.collect().odds.size(), 3U);
 }
 
 TEST(SurfelMap, MemoryIsCountedGivenBackAndNeverAboveTheLimit) {
@@ -181,7 +181,7 @@ TEST(SurfelMap, MemoryIsCountedGivenBackAndNeverAboveTheLimit) {
     for (const SurfelBlock& block : map.blocks()) {
       held += sizeof block;
       held += block.surfels.x.capacity() * 4 + block.surfels.seen.capacity() * 4 +
-              (SurfelArrays::bytesPerSurfel() - 8) * block.surfels.violations.capacity();
+              (SurfelArrays::bytesPerSurfel() - 8) * block.surfels.odds.capacity();
     }
     EXPECT_EQ(map.memory(), held);
     ASSERT_LE(held, limit);

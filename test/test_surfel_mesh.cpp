@@ -20,7 +20,8 @@ void add(SurfelArrays& s, const Vector3f& p, const Vector3f& n, const Vector3f& 
   s.nx.back() = n.x(), s.ny.back() = n.y(), s.nz.back() = n.z();
   s.r.back() = color.x(), s.g.back() = color.y(), s.b.back() = color.z();
   s.radius.back() = 0.01F;
-  s.weight.back() = s.confidence.back() = 10;
+  s.weight.back() = 10;
+  s.odds.back() = static_odds::kMost;
 }
 
 /// Surfels of a square of `side_m` at z = `z`, 1.3 cm apart; red where x < 0, blue elsewhere.

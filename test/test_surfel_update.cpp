@@ -72,7 +72,7 @@ TEST(SurfelUpdate, OnProbationNothingCountsAgainstStableSurfels) {
   EXPECT_EQ(countNear(map, 2.0), wall);
   map.forEachSurfel([](const SurfelArrays& s, std::size_t i) {
     if (s.created[i] == 0) {
-      ASSERT_EQ(s.violations[i], 0);
+      ASSERT_EQ(s.odds[i], static_odds::kMost);
     }
   });
 }
@@ -88,8 +88,7 @@ TEST(SurfelUpdate, BothSidesOfABoardAreMapped) {
   fuseOften(15, scene(1.5), map, {}, behind);
   EXPECT_EQ(map.size(), 2 * front) << "the far side has surfels of its own";
   map.forEachSurfel([](const SurfelArrays& s, std::size_t i) {
-    EXPECT_EQ(s.confidence[i], 15) << "seen from behind is no support";
-    EXPECT_EQ(s.violations[i], 0) << "nor a violation";
+    EXPECT_NEAR(s.odds[i], 15 * static_odds::kFrame, 1e-5) << "seen from behind tells nothing";
     EXPECT_EQ(s.nz[i] < 0, s.created[i] == 0);
   });
 }
@@ -153,7 +152,8 @@ TEST(SurfelUpdate, WhatIsSeenCloseToPeopleStays) {
   SurfelMap map{MapConfig{}};
   fuseOften(40, withoutFound(scene(3.0, 1.5)), map, foundAt(1.5));
   EXPECT_GT(stableNear(map, 1.5), 700U) << "the chair of somebody who sits";
-  map.forEachSurfel([](const SurfelArrays& s, std::size_t i) { ASSERT_EQ(s.violations[i], 0); });
+  map.forEachSurfel(
+      [](const SurfelArrays& s, std::size_t i) { ASSERT_EQ(s.odds[i], static_odds::kMost); });
 }
 
 TEST(SurfelUpdate, WhoWasMappedUnnoticedGoesOnceFound) {
@@ -234,7 +234,7 @@ TEST(SurfelUpdate, ALowStepSeenFromAfarKeepsBothItsLevels) {
   for (const auto& [z, least] : {std::pair<float, std::size_t>{3.94F, 1500}, {4.0F, 15000}}) {
     std::size_t stable = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      stable += std::abs(all.z[i] - z) < 0.01F && all.confidence[i] > 100 ? 1 : 0;
+      stable += std::abs(all.z[i] - z) < 0.01F && all.odds[i] > 0.9F * static_odds::kMost ? 1 : 0;
     }
     EXPECT_GT(stable, least) << z;
   }

@@ -19,7 +19,7 @@ void addWall(SurfelArrays& s, float from, float z, int created) {
     s.z.back() = z;
     s.nz.back() = -1;
     s.radius.back() = 0.015F;
-    s.confidence.back() = 20;
+    s.odds.back() = static_odds::kMost;
     s.created.back() = created;
   }
 }

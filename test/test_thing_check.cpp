@@ -98,7 +98,7 @@ struct View {
       s.x.back() = p.x(), s.y.back() = p.y(), s.z.back() = p.z();
       s.nx.back() = -1.0F;
       s.radius.back() = 0.01F;
-      s.confidence.back() = 100.0F;
+      s.odds.back() = static_odds::kMost;
     }
     map.add(s);
   }

@@ -26,8 +26,9 @@ const SurfelPoint* surfelsOf(const sensor_msgs::PointCloud2& cloud);
 sensor_msgs::PointCloud2::Ptr toCloud(const std::vector<SurfelPoint>& points);
 
 /// The stable surfels as a cloud: x y z (m), rgb (packed as PCL does), normal_x normal_y normal_z,
-/// radius (m), confidence (frames), all 32-bit floats, moved by T_map_start into the map frame.
-/// Where there are more than `max_points` (0: any number), evenly many are left out.
+/// radius (m), confidence (probability that it stands still), all 32-bit floats, moved by
+/// T_map_start into the map frame. Where there are more than `max_points` (0: any number), evenly
+/// many are left out.
 sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
                                       const Eigen::Isometry3d& T_map_start, std::size_t max_points);
 

@@ -62,7 +62,7 @@ class Map:
     normals: npt.NDArray[np.float32]  #: N x 3
     colors: npt.NDArray[np.uint8]  #: N x 3, R G B
     radii: npt.NDArray[np.float32]  #: N, m
-    confidences: npt.NDArray[np.float32]  #: N, frames at 30 Hz
+    confidences: npt.NDArray[np.float32]  #: N, probability that it stands still
     def __len__(self) -> int: ...
 
 class Slam:

@@ -7,7 +7,9 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
+#include "map_schema.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/io/images.hpp"
 
 namespace pf {
@@ -43,8 +45,6 @@ bool allFinite(const std::vector<std::int32_t>&) { return true; }
 
 // What no camera makes: ten thousand kilometres away, a pixel of ten metres.
 constexpr float kFarthest_m = 1e7F, kLargestRadius_m = 10.0F;
-// Fusion removes a surfel long before.
-constexpr std::int32_t kMostViolations = 1'000'000;
 // Of a unit vector that was turned again and again in single precision.
 constexpr float kUnitTolerance = 0.01F;
 
@@ -62,8 +62,8 @@ void checkValues(const SurfelArrays& s) {
             "the normal's length of a surfel", std::sqrt(normal2), "1");
     require(s.radius[i] > 0 && s.radius[i] <= kLargestRadius_m, "the radius of a surfel",
             s.radius[i], "more than 0 and at most 10 m");
-    require(s.violations[i] >= 0 && s.violations[i] <= kMostViolations,
-            "the violations of a surfel", s.violations[i], "0 to 1000000");
+    require(isWithin(s.odds[i], static_odds::kGone, static_odds::kMost), "the odds of a surfel",
+            s.odds[i], "-100 to 3.52");
   }
 }
 
@@ -75,6 +75,27 @@ void checkFrames(const SurfelArrays& s, int last_frame) {
                        std::to_string(s.seen[i]) + ", expected at most " +
                        std::to_string(last_frame));
     }
+  }
+}
+
+/// Takes the next array of `bytes`.
+template <typename Array>
+void take(std::string_view& bytes, Array& array) {
+  const std::size_t size = array.size() * sizeof(array[0]);
+  if (size > 0) std::memcpy(array.data(), bytes.data(), size);
+  bytes.remove_prefix(size);
+}
+
+/// Before kOddsVersion surfels had the frames that supported them in place of the odds, and at the
+/// end those that contradicted them.
+void upgradeOdds(std::string_view violations, SurfelArrays& s) {
+  std::vector<std::int32_t> against(s.size());
+  take(violations, against);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    s.odds[i] = static_odds::supported(0.0F, s.odds[i]);
+    require(against[i] >= 0, "the violations of a surfel", against[i], "0 or more");
+    if (against[i] == 0) continue;
+    s.odds[i] = static_odds::contradicted(s.odds[i], static_cast<float>(against[i]));
   }
 }
 
@@ -121,23 +142,22 @@ Matrix6d decodeCovariance(std::string_view bytes) {
   return matrixOf<Matrix6d>(bytes, "a covariance");
 }
 
-SurfelArrays decodeSurfels(std::string_view bytes, int last_frame) {
-  constexpr std::size_t kBytes = SurfelArrays::bytesPerSurfel();
-  if (bytes.size() % kBytes != 0) {
+SurfelArrays decodeSurfels(std::string_view bytes, std::int64_t version, int last_frame) {
+  const std::size_t each =
+      SurfelArrays::bytesPerSurfel() + (version < kOddsVersion ? sizeof(std::int32_t) : 0);
+  if (bytes.size() % each != 0) {
     throw InputError("a block of surfels has " + std::to_string(bytes.size()) +
-                     " bytes, expected a multiple of " + std::to_string(kBytes));
+                     " bytes, expected a multiple of " + std::to_string(each));
   }
   SurfelArrays surfels;
-  surfels.resize(bytes.size() / kBytes);
-  const char* next = bytes.data();
+  surfels.resize(bytes.size() / each);
   bool finite = true;
   surfels.forEachArray([&](auto& array) {
-    if (array.empty()) return;
-    std::memcpy(array.data(), next, array.size() * sizeof(array[0]));
-    next += array.size() * sizeof(array[0]);
+    take(bytes, array);
     finite &= allFinite(array);
   });
   if (!finite) throw InputError("a surfel has a value that is not finite");
+  if (version < kOddsVersion) upgradeOdds(bytes, surfels);
   checkFrames(surfels, last_frame);
   checkValues(surfels);
   return surfels;

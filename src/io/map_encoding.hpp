@@ -20,8 +20,9 @@ std::string encodeIntrinsics(const PinholeCamera& camera);
 
 Eigen::Isometry3d decodeTransform(std::string_view bytes);
 Matrix6d decodeCovariance(std::string_view bytes);
-/// Surfels of frames up to `last_frame`, with values that surfels can have.
-SurfelArrays decodeSurfels(std::string_view bytes, int last_frame);
+/// Surfels of a file of this version, of frames up to `last_frame`, with values that surfels can
+/// have.
+SurfelArrays decodeSurfels(std::string_view bytes, std::int64_t version, int last_frame);
 /// An image of one channel, with its type; empty where it is not whole, or larger than `largest`.
 cv::Mat decodePng(std::string_view bytes, const cv::Size& largest);
 void decodeIntrinsics(std::string_view bytes, PinholeCamera& camera);

@@ -8,6 +8,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/rigid_motion.hpp"
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/ply.hpp"
 
@@ -35,7 +36,7 @@ void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char*
   motion.direction(s.nx[i], s.ny[i], s.nz[i], n.x(), n.y(), n.z());
   point.color = {toByte(s.r[i]), toByte(s.g[i]), toByte(s.b[i])};
   packPoint(point, out);
-  const std::array<float, 2> rest = {s.radius[i], s.confidence[i]};
+  const std::array<float, 2> rest = {s.radius[i], static_odds::probability(s.odds[i])};
   std::memcpy(out + kPointBytes, rest.data(), sizeof rest);
 }
 
@@ -76,7 +77,9 @@ void unpack(const SurfacePoint& point, const char* vertex, std::size_t i, Surfel
   s.g[i] = point.color[1];
   s.b[i] = point.color[2];
   s.radius[i] = rest[0];
-  s.weight[i] = s.confidence[i] = rest[1];
+  s.weight[i] = 1.0F;
+  // Files of older versions have frames here: 1 and more.
+  s.odds[i] = std::min(static_odds::kMost, static_odds::of(std::clamp(rest[1], 0.0F, 1.0F)));
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ std::vector<FragmentSurfels> MapReader::surfels() const {
     SqliteStatement row =
         select(state_->database, blockColumns(state_->version), "blocks ORDER BY id");
     while (row.step()) {
-      const BlockRecord block = blockAt(row, last_frame);
+      const BlockRecord block = blockAt(row, state_->version, last_frame);
       if (parts.empty() || parts.back().fragment != block.fragment) {
         parts.push_back({block.fragment, {}});
       }

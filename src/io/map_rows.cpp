@@ -93,7 +93,7 @@ const char* blockColumns(std::int64_t version) {
                                      : "id, surfels, checksum, fragment";
 }
 
-BlockRecord blockAt(const SqliteStatement& row, int last_frame) {
+BlockRecord blockAt(const SqliteStatement& row, std::int64_t version, int last_frame) {
   const std::string name = "block " + std::to_string(row.integer(0));
   const std::string_view bytes = row.blob(1);
   if (checksumOf(bytes) != row.integer(2)) {
@@ -106,7 +106,7 @@ BlockRecord blockAt(const SqliteStatement& row, int last_frame) {
     throw InputError(name + " is of fragment " + std::to_string(block.fragment) +
                      ", expected 0 or more");
   }
-  block.surfels = std::make_shared<const SurfelArrays>(decodeSurfels(bytes, last_frame));
+  block.surfels = std::make_shared<const SurfelArrays>(decodeSurfels(bytes, version, last_frame));
   return block;
 }
 

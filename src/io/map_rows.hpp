@@ -30,7 +30,7 @@ FrameRecord frameAt(const SqliteStatement& row);
 /// Of the version of a file; in version 1 all blocks count as the first fragment's.
 const char* blockColumns(std::int64_t version);
 /// Surfels of frames up to `last_frame`.
-BlockRecord blockAt(const SqliteStatement& row, int last_frame);
+BlockRecord blockAt(const SqliteStatement& row, std::int64_t version, int last_frame);
 
 constexpr char kImageColumns[] = "keyframe, grey, depth";
 /// `camera`: size of the frames, which no image exceeds.

@@ -177,7 +177,7 @@ void Salvage::gatherBlocks() {
   SurfelArrays old;
   forEachRow("blocks of surfels", "blocks", "id", blockColumns(version_),
              [&](std::int64_t, const SqliteStatement& row) {
-               BlockRecord block = blockAt(row, std::numeric_limits<std::int32_t>::max());
+               BlockRecord block = blockAt(row, version_, std::numeric_limits<std::int32_t>::max());
                for (const auto* frames : {&block.surfels->seen, &block.surfels->created}) {
                  for (const std::int32_t frame : *frames) {
                    found_.frame = std::max(found_.frame, frame);

@@ -8,7 +8,7 @@ namespace pf {
 
 /// "PFdb" in the header of the file, and the version of what follows.
 constexpr std::int64_t kMapApplication = 0x50466462;
-constexpr std::int64_t kMapVersion = 3;
+constexpr std::int64_t kMapVersion = 4;
 constexpr std::int64_t kFirstMapVersion = 1;  ///< the oldest that is read (see map_upgrade.hpp)
 
 /// The tables as SQLite keeps them: a file with any other is refused, so that nothing hostile can
@@ -37,6 +37,7 @@ constexpr const char* kFirstKeyframesTable =
     " map_frame INTEGER, t_map_camera BLOB)";
 constexpr std::int64_t kFragmentsVersion = 2;  ///< the first with fragments of blocks
 constexpr std::int64_t kRetiredVersion = 3;    ///< the first with retired keyframes
+constexpr std::int64_t kOddsVersion = 4;       ///< the first with the odds of surfels
 /// @}
 
 }  // namespace pf

@@ -5,13 +5,10 @@
 
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/static_odds.hpp"
 
 namespace pf {
-namespace {
-
-constexpr float kFullSupport = 30.0F;  // a keyframe stands for itself
-
-}  // namespace
+namespace {}  // namespace
 
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
                           bool nobody_in_view) {
@@ -45,8 +42,8 @@ void KeyframePicture::assign(const KeyframeView& view, const DepthSensor& sensor
   model.normal_y = level.normal_y;
   model.normal_z = level.normal_z;
   model.intensity = level.intensity;
-  model.support.create(level.depth_m.size(), CV_32FC1);
-  model.support.setTo(kFullSupport);
+  model.odds.create(level.depth_m.size(), CV_32FC1);
+  model.odds.setTo(static_odds::kMost);  // a keyframe stands for itself
   points.assign(model, sensor);
 }
 

@@ -52,8 +52,8 @@ MapPoints thinnedPoints(const SurfelMap& map, int fragment, double voxel_m) {
         array->push_back(0.0F);
       }
     }
-    if (s.confidence[i] <= support[found->second]) return;
-    support[found->second] = s.confidence[i];
+    if (s.weight[i] <= support[found->second]) return;
+    support[found->second] = s.weight[i];
     set(points, found->second, s, i);
   });
   return points;

@@ -13,7 +13,7 @@ struct Disc {
   float offset;           ///< n . (x, y, z): the disc's plane
   float inverse_radius2;  ///< 1 / radius^2
   std::int16_t first_u, last_u, first_v, last_v;
-  float intensity, confidence;
+  float intensity, odds;
   std::uint32_t slot;  ///< of its surfel in its block
   bool stable;
 };

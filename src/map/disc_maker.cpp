@@ -35,7 +35,7 @@ std::uint32_t DiscMaker::make(const SurfelRange& range, Disc* discs) const {
     d.offset = seen.facing[k];
     d.inverse_radius2 = 1.0F / (s.radius[i] * s.radius[i]);
     d.intensity = 0.299F * s.r[i] + 0.587F * s.g[i] + 0.114F * s.b[i];
-    d.confidence = s.confidence[i];
+    d.odds = s.odds[i];
     d.slot = i;
     d.stable = stable;
     ++count;

@@ -10,10 +10,6 @@
 namespace pf {
 namespace {
 
-// Support (frames at 30 Hz) that what stands before a known surface begins below nothing with:
-// a person whom the detector misses for a second must not become part of the room.
-constexpr float kNewcomer = 30.0F;
-
 bool isWanted(const WorkingFrame& frame, const Evidence& evidence, int u, int v) {
   return evidence.explained[v * frame.camera.width + u] == kUnexplained &&
          frame.depth_m.at<float>(v, u) > 0 && frame.levels[0].normal_z.at<float>(v, u) < 0;
@@ -38,8 +34,7 @@ void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const Fus
   const float cosine = -(nx * x + ny * y + nz * z) / std::sqrt(x * x + y * y + z * z);
   s.radius[i] = footprintRadius(z, fx, cosine);
   s.weight[i] = measurementWeight(frame.sensor, z);
-  s.confidence[i] = frame.pace.worth();
-  s.violations[i] = 0;
+  s.odds[i] = static_odds::supported(0.0F, frame.pace.worth());
 }
 
 }  // namespace
@@ -65,7 +60,7 @@ void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_
       for (int u = 0; u < cols; ++u) {
         if (isWanted(frame, evidence, u, v)) {
           writeSurfel(frame, to_map, options, u, v, next, surfels);
-          if (evidence.known_behind.has(u, v)) surfels.confidence[next] -= kNewcomer;
+          if (evidence.known_behind.has(u, v)) surfels.odds[next] += static_odds::kNewcomer;
           ++next;
         }
       }

@@ -40,7 +40,7 @@ void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color
   view.camera = camera;
   view.T_map_camera = T;
   for (cv::Mat* plane : {&view.depth_m, &view.normal_x, &view.normal_y, &view.normal_z,
-                         &view.intensity, &view.support}) {
+                         &view.intensity, &view.odds}) {
     plane->create(size, CV_32FC1);
   }
   view.stable.create(size, CV_8UC1);
@@ -59,13 +59,13 @@ void showDisc(const Disc& d, const Rays& rays, int u, int v, ModelView& view) {
   view.normal_y.at<float>(v, u) = d.ny;
   view.normal_z.at<float>(v, u) = d.nz;
   view.intensity.at<float>(v, u) = d.intensity;
-  view.support.at<float>(v, u) = d.confidence;
+  view.odds.at<float>(v, u) = d.odds;
 }
 
 void showNothing(int u, int v, ModelView& view) {
   view.stable.at<std::uint8_t>(v, u) = 0;
   for (cv::Mat* plane : {&view.depth_m, &view.normal_x, &view.normal_y, &view.normal_z,
-                         &view.intensity, &view.support}) {
+                         &view.intensity, &view.odds}) {
     plane->at<float>(v, u) = 0.0F;
   }
 }

@@ -41,7 +41,6 @@ SurfelMap SurfelMap::resting(int since_frame) const {
     if (blocks_[i].changed >= since_frame) copy.blocks_.drop(i);
   }
   copy.frame_ = frame_;
-  copy.worth_ = worth_;
   copy.active_frames_ = active_frames_;
   copy.unstable_frames_ = unstable_frames_;
   return copy;

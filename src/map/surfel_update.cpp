@@ -23,7 +23,9 @@ constexpr int kTurns = 4;
 // Who is found now may have been in view, and mapped, for so long; that must be gone before it is
 // older.
 constexpr double kUnnoticed_s = 1.5;
-constexpr int kUnnoticedViolations = 2;  // a frame
+constexpr float kUnnoticedFrames = 2;  // of contradiction, a frame
+// Frames that one counts for which sees through a surfel, and through all around it.
+constexpr float kSeenFarThrough = 2;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 // What stands so far before a stable surface may have come there.
@@ -82,12 +84,13 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (!evidence_.person_m.empty()) {
     const float person = evidence_.person_m.at<float>(p.v, p.u);
     if (person > 0 && std::abs(person - p.z) <= tolerance) {
-      violate(s, i);
+      contradictOne(s, i);
       return false;
     }
   }
-  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * tolerance) {
-    violate(s, i);
+  const float beyond_m = p.z + 1.5F * tolerance;
+  if (evidence_.free_m.at<float>(p.v, p.u) > beyond_m) {
+    contradictOne(s, i, isFarFromRims(p, beyond_m) ? kSeenFarThrough : 1.0F);
     return false;
   }
   if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
@@ -118,11 +121,25 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   return true;
 }
 
+/// Whether the frame sees farther than this (m) in all of 9x9 pixels: free space there is no rim of
+/// something whose place is not quite known.
+bool SurfelUpdate::isFarFromRims(const Place& p, float beyond_m) const {
+  constexpr int kStep = 3;  // free_m is of 3x3 pixels
+  const cv::Mat& free_m = evidence_.free_m;
+  for (int dv = -kStep; dv <= kStep; dv += kStep) {
+    const float* row = free_m.ptr<float>(std::clamp(p.v + dv, 0, free_m.rows - 1));
+    for (int du = -kStep; du <= kStep; du += kStep) {
+      if (!(row[std::clamp(p.u + du, 0, free_m.cols - 1)] > beyond_m)) return false;
+    }
+  }
+  return true;
+}
+
 /// What was made close to somebody not long ago, and is not seen now, may be what was mapped of
 /// them before they were found: it goes also where nothing is seen behind it.
 void SurfelUpdate::doubt(SurfelArrays& s, std::size_t i, const Place& p) const {
   const bool is_young = s.created[i] > map_.frame() - unnoticed_;
-  if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) violate(s, i, kUnnoticedViolations);
+  if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) contradictOne(s, i, kUnnoticedFrames);
 }
 
 bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
@@ -141,7 +158,7 @@ SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, std::si
 void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
   for (const Layer& layer : result.layers) {
     const std::int64_t explanation = evidence_.explained[layer.pixel];
-    if (Explanation::made(explanation) < s.created[layer.surfel]) violate(s, layer.surfel);
+    if (Explanation::made(explanation) < s.created[layer.surfel]) contradictOne(s, layer.surfel);
   }
   for (const Supported& seen : result.supported) {
     const std::size_t i = seen.surfel;
@@ -149,10 +166,7 @@ void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
     if (stable && !options_.may_remove_stable) continue;
     if (!isDoubled(seen, s.created[i] - (stable ? another_pass_ : 1))) continue;
     // Its support is taken back, and as much of that before.
-    const int taken = 2 * (stable ? kTurns : 1);
-    const float left = std::max(0.0F, s.confidence[i] - worth_ * static_cast<float>(taken));
-    s.confidence[i] = std::min(s.confidence[i], left);
-    s.violations[i] += taken;
+    contradictOne(s, i, 2.0F * static_cast<float>(stable ? kTurns : 1));
   }
 }
 
@@ -166,8 +180,9 @@ bool SurfelUpdate::isDoubled(const Supported& seen, std::int32_t before) const {
   return apart > kLeastLayer_m + seen.beside_m * sine;
 }
 
-void SurfelUpdate::violate(SurfelArrays& s, std::size_t i, int times) const {
-  if (options_.may_remove_stable || !map_.isStable(s, i)) s.violations[i] += times;
+void SurfelUpdate::contradictOne(SurfelArrays& s, std::size_t i, float frames) const {
+  if (!options_.may_remove_stable && map_.isStable(s, i)) return;
+  s.odds[i] = static_odds::contradicted(s.odds[i], worth_ * frames);
 }
 
 Eigen::Vector3f SurfelUpdate::normal(int u, int v) const {
@@ -213,8 +228,7 @@ void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
 void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
                          const Eigen::Vector3f& n, float cosine) const {
   s.seen[i] = map_.frame();
-  s.violations[i] = std::max(0, s.violations[i] - 1);
-  s.confidence[i] += worth_;
+  s.odds[i] = static_odds::supported(s.odds[i], worth_);
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
   const float gain = measurementWeight(frame_.sensor, measured);

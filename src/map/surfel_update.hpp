@@ -93,8 +93,10 @@ class SurfelUpdate {
   /// Depths closer than this (m) measure the same surface.
   float agreement(float z) const { return frame_.sensor.tolerance(z, 5.0F); }
   bool isLayer(const Place& p, float measured, float cosine) const;
+  bool isFarFromRims(const Place& p, float beyond_m) const;
   void doubt(SurfelArrays& s, std::size_t i, const Place& p) const;
-  void violate(SurfelArrays& s, std::size_t i, int times = 1) const;
+  /// By so many frames like this one.
+  void contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;
   float depthOnRay(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;
   Supported supportedAt(const SurfelArrays& s, std::size_t i, const Place& p) const;

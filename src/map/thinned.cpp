@@ -38,9 +38,8 @@ SurfelArrays thinned(const SurfelArrays& surfels, float voxel_m) {
     }
     const auto [place, is_new] = places.try_emplace(cube, sums.size());
     if (is_new) sums.emplace_back().first = i;
-    const double weight = std::isfinite(surfels.confidence[i]) && surfels.confidence[i] > 1
-                              ? surfels.confidence[i]
-                              : 1.0;
+    const double weight =
+        std::isfinite(surfels.weight[i]) && surfels.weight[i] > 1 ? surfels.weight[i] : 1.0;
     sums[place->second].values += weight * one.values;
     sums[place->second].weight += weight;
   }

@@ -87,7 +87,8 @@ PythonMap mapOf(PythonSlam& slam) {
   map.normals = arrayOf(rowsOf(surfels.nx, surfels.ny, surfels.nz), {count, 3});
   map.colors = arrayOf(colorsOf(surfels), {count, 3});
   map.radii = arrayOf(std::move(surfels.radius), {count});
-  map.confidences = arrayOf(std::move(surfels.confidence), {count});
+  for (float& odds : surfels.odds) odds = static_odds::probability(odds);
+  map.confidences = arrayOf(std::move(surfels.odds), {count});
   return map;
 }
 

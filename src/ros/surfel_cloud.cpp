@@ -74,7 +74,7 @@ sensor_msgs::PointCloud2::Ptr toCloud(const pf::SurfelMap& map,
     const Eigen::Vector3f p = T * Eigen::Vector3f(s.x[i], s.y[i], s.z[i]);
     const Eigen::Vector3f n = T.linear() * Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]);
     points.push_back({p.x(), p.y(), p.z(), packed(s.r[i], s.g[i], s.b[i]), n.x(), n.y(), n.z(),
-                      s.radius[i], s.confidence[i]});
+                      s.radius[i], pf::static_odds::probability(s.odds[i])});
   });
   return toCloud(points);
 }

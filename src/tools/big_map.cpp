@@ -47,7 +47,7 @@ SurfelArrays stableOf(const SurfelMap& map) {
     const auto index = static_cast<std::uint32_t>(i);
     if (map.isStable(s, i)) room.append(s, &index, 1);
   });
-  for (auto* counts : {&room.created, &room.seen, &room.violations}) {
+  for (auto* counts : {&room.created, &room.seen}) {
     std::fill(counts->begin(), counts->end(), 0);
   }
   return room;

@@ -21,7 +21,7 @@ using Poses = std::map<std::int64_t, Eigen::Isometry3d>;
 /// A map of saved surfels; all that was saved is stable.
 SurfelMap mapOf(const SurfelArrays& surfels) {
   MapConfig config;
-  config.stable_confidence = 0.0;
+  config.stable_probability = 0.0;
   config.memory_limit_mb = 1e6;
   SurfelMap map(config);
   map.add(surfels);

@@ -32,7 +32,7 @@ bool isSegmented(const TrackingStatusMsg& status) {
 
 pf::SurfelMap mapOf(const std::string& file) {
   pf::MapConfig config;
-  config.stable_confidence = 0;  // all that was saved is stable
+  config.stable_probability = 0;  // all that was saved is stable
   config.memory_limit_mb = 1e6;
   pf::SurfelMap map(config);
   map.add(pf::loadMap(file));

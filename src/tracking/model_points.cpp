@@ -5,19 +5,17 @@
 #include <cmath>
 
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/core/static_odds.hpp"
 
 namespace pf {
 namespace {
 
-// A surfel that so many frames (at 30 Hz) have supported counts fully. Until then it may belong to
-// a person who moves and was not masked. It never counts for nothing: a turn shows little but new
-// surfels.
-constexpr float kFullSupport = 30.0F;
+// The surer it is that a surfel stands still, the more it counts: it may belong to a person who was
+// not masked. It never counts for nothing: a turn shows little but new surfels.
 constexpr float kLeastWeight = 0.2F;
-constexpr float kFillSupport = 1.0F;
 
-float weightOf(float support) {
-  return std::clamp(support * (1.0F / kFullSupport), kLeastWeight, 1.0F);
+float weightOf(float odds) {
+  return std::clamp(odds * (1.0F / static_odds::kMost), kLeastWeight, 1.0F);
 }
 
 /// Mean over the nearest surface of a 2x2 block of `fine`, into pixel (u, v) of `coarse`.
@@ -29,7 +27,7 @@ void halvePixel(const ModelPlanes& fine, const DepthSensor& sensor, int u, int v
     if (z > 0 && z < nearest) nearest = z;
   }
   const float limit = nearest + sensor.tolerance(nearest, 4.0F);
-  float inverse = 0, normal[3] = {}, intensity = 0, support = 0, count = 0;
+  float inverse = 0, normal[3] = {}, intensity = 0, odds = 0, count = 0;
   for (int k = 0; k < 4; ++k) {
     const int row = 2 * v + k / 2, col = 2 * u + k % 2;
     const float z = fine.depth_m.at<float>(row, col);
@@ -37,7 +35,7 @@ void halvePixel(const ModelPlanes& fine, const DepthSensor& sensor, int u, int v
     inverse += 1.0F / z;
     for (int i = 0; i < 3; ++i) normal[i] += fine.normal[i].at<float>(row, col);
     intensity += fine.intensity.at<float>(row, col);
-    support += fine.support.at<float>(row, col);
+    odds += fine.odds.at<float>(row, col);
     count += 1;
   }
   const float share = count > 0 ? 1.0F / count : 0.0F;
@@ -46,7 +44,7 @@ void halvePixel(const ModelPlanes& fine, const DepthSensor& sensor, int u, int v
   coarse.depth_m.at<float>(v, u) = count > 0 ? count / inverse : 0.0F;
   for (int i = 0; i < 3; ++i) coarse.normal[i].at<float>(v, u) = normal[i] / length;
   coarse.intensity.at<float>(v, u) = intensity * share;
-  coarse.support.at<float>(v, u) = support * share;
+  coarse.odds.at<float>(v, u) = odds * share;
 }
 
 /// The view, and the frame where the view shows nothing or something well behind the frame's
@@ -58,7 +56,7 @@ void fillFrom(const FrameLevel& frame, const ModelView& view, const DepthSensor&
   view.normal_y.copyTo(planes.normal[1]);
   view.normal_z.copyTo(planes.normal[2]);
   view.intensity.copyTo(planes.intensity);
-  view.support.copyTo(planes.support);
+  view.odds.copyTo(planes.odds);
   parallelFor(view.depth_m.rows, 16, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       const float* seen = frame.depth_m.ptr<float>(v);
@@ -71,7 +69,7 @@ void fillFrom(const FrameLevel& frame, const ModelView& view, const DepthSensor&
         planes.normal[1].at<float>(v, u) = frame.normal_y.at<float>(v, u);
         planes.normal[2].at<float>(v, u) = frame.normal_z.at<float>(v, u);
         planes.intensity.at<float>(v, u) = frame.intensity.at<float>(v, u);
-        planes.support.at<float>(v, u) = kFillSupport;
+        planes.odds.at<float>(v, u) = static_odds::kFrame;
       }
     }
   });
@@ -80,7 +78,7 @@ void fillFrom(const FrameLevel& frame, const ModelView& view, const DepthSensor&
 void halve(const ModelPlanes& fine, const DepthSensor& sensor, ModelPlanes& coarse) {
   const cv::Size size(fine.depth_m.cols / 2, fine.depth_m.rows / 2);
   for (cv::Mat* plane : {&coarse.depth_m, &coarse.normal[0], &coarse.normal[1], &coarse.normal[2],
-                         &coarse.intensity, &coarse.support}) {
+                         &coarse.intensity, &coarse.odds}) {
     plane->create(size, CV_32FC1);
   }
   parallelFor(size.height, 8, [&](std::size_t begin, std::size_t end) {
@@ -103,7 +101,7 @@ void ModelPoints::assign(const PinholeCamera& camera, const ModelPlanes& planes)
     const float* normal[3] = {planes.normal[0].ptr<float>(v), planes.normal[1].ptr<float>(v),
                               planes.normal[2].ptr<float>(v)};
     const float* grey = planes.intensity.ptr<float>(v);
-    const float* support = planes.support.ptr<float>(v);
+    const float* odds = planes.odds.ptr<float>(v);
     const float ray_y = (static_cast<float>(v) - static_cast<float>(camera.cy)) * inverse_fy;
     for (int u = 0; u < planes.depth_m.cols; ++u) {
       if (depth[u] <= 0) continue;
@@ -115,7 +113,7 @@ void ModelPoints::assign(const PinholeCamera& camera, const ModelPlanes& planes)
       ny[count] = normal[1][u];
       nz[count] = normal[2][u];
       intensity[count] = grey[u];
-      weight[count] = weightOf(support[u]);
+      weight[count] = weightOf(odds[u]);
       ++count;
     }
   }
@@ -133,7 +131,7 @@ void ModelPyramid::assign(const ModelView& view, const DepthSensor& sensor,
     fillFrom(*fill, view, sensor, finest);
   } else {
     finest = {
-        view.depth_m, {view.normal_x, view.normal_y, view.normal_z}, view.intensity, view.support};
+        view.depth_m, {view.normal_x, view.normal_y, view.normal_z}, view.intensity, view.odds};
   }
   PinholeCamera camera = view.camera;
   for (int i = 0; i < kLevels; ++i) {

@@ -19,11 +19,11 @@ struct FusionOptions {
   bool may_remove_stable = true;
 
   /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What was mapped close to
-  /// people less than 45 frames ago, and is not seen in this frame, may be what was mapped of them
-  /// before they were found: that counts as two violations.
+  /// people less than 1.5 s ago, and is not seen in this frame, may be what was mapped of them
+  /// before they were found: that counts as two frames that contradict it.
   cv::Mat mask;
   /// Like `mask`: a person whom the map has. A surfel seen there at the depth of `input_depth_m`
-  /// was fused from a person by mistake: that counts as a violation.
+  /// was fused from a person by mistake: that contradicts it.
   cv::Mat in_map_mask;
   /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out.
   cv::Mat input_depth_m;
@@ -45,10 +45,9 @@ struct FusionCounts {
 /// Seen from the surfels, so that each is changed by exactly one pixel and threads never meet: an
 /// active surfel in view projects to a pixel; if the depth there agrees and it does not turn its
 /// back, it moves along the pixel's ray by the running weighted mean (weights 1 / variance of the
-/// sensor) and gains confidence; if the frame sees well behind it, that is a violation of free
-/// space. Pixels that no surfel explains become new surfels. Seen through too often, or unstable
-/// and not supported for long: removed. So a person who was fused by mistake goes away once the
-/// room behind is seen.
+/// sensor) and its odds rise; if the frame sees well behind it, they fall. Pixels that no surfel
+/// explains become new surfels. Refuted, or unstable and not supported for long: removed. So a
+/// person who was fused by mistake goes away once the room behind is seen.
 class Fuser {
  public:
   Fuser();

@@ -12,6 +12,7 @@
 
 #include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/pace.hpp"
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/map/config.hpp"
 #include "posefusion/map/shared_blocks.hpp"
 #include "posefusion/map/surfels.hpp"
@@ -32,7 +33,10 @@ class SurfelMap {
 
   explicit SurfelMap(const MapConfig& config, float block_side_m = kBlockSide_m,
                      const DepthSensor& sensor = {})
-      : config_(config), sensor_(sensor), block_side_m_(block_side_m) {}
+      : config_(config),
+        sensor_(sensor),
+        block_side_m_(block_side_m),
+        stable_odds_(static_odds::of(config.stable_probability)) {}
 
   const MapConfig& config() const { return config_; }
 
@@ -44,7 +48,6 @@ class SurfelMap {
   /// `pace`: of the frames.
   void advance(const Pace& pace = {}) {
     ++frame_;
-    worth_ = pace.worth();
     active_frames_ = pace.framesIn(config_.active_window_s);
     unstable_frames_ = pace.framesIn(config_.max_unstable_age_s);
   }
@@ -57,17 +60,11 @@ class SurfelMap {
   bool isActive(const SurfelArrays& s, std::size_t i) const {
     return frame_ - s.seen[i] <= active_frames_;
   }
-  bool isStable(const SurfelArrays& s, std::size_t i) const {
-    return s.confidence[i] >= static_cast<float>(config_.stable_confidence);
-  }
-  /// Seen through too often, or unstable and not supported for long: gone for fusion and rendering,
+  bool isStable(const SurfelArrays& s, std::size_t i) const { return s.odds[i] >= stable_odds_; }
+  /// Refuted, or unstable and not supported for long: gone for fusion and rendering,
   /// though its memory may be swept up some frames later.
   bool isDead(const SurfelArrays& s, std::size_t i) const {
-    // What contradicts a surfel must outweigh what supported it, so that some frames at a wrong
-    // pose do not erase the room; but not more than a second of it, so that furniture can move.
-    const float outweighed = std::clamp(s.confidence[i], 0.0F, kMostOutweighed);
-    const float against = worth_ * static_cast<float>(s.violations[i]);
-    if (against - static_cast<float>(config_.max_violations) > outweighed) return true;
+    if (s.odds[i] <= static_odds::kGone) return true;
     return !isStable(s, i) && frame_ - s.seen[i] > unstable_frames_;
   }
 
@@ -156,8 +153,6 @@ class SurfelMap {
  private:
   friend class Fuser;
 
-  static constexpr float kMostOutweighed = 24;  // frames at 30 Hz
-
   /// A cube of a fragment, counted along each axis from its origin.
   struct Cell {
     std::int32_t fragment = kFirstFragment, x = 0, y = 0, z = 0;
@@ -188,11 +183,11 @@ class SurfelMap {
   MapConfig config_;
   DepthSensor sensor_;
   float block_side_m_;
+  float stable_odds_;
   SharedBlocks blocks_;
   std::unordered_map<Cell, std::uint32_t, CellHash> index_;
   int frame_ = -1;
   // At the pace of the last frame:
-  float worth_ = Pace().worth();
   int active_frames_ = Pace().framesIn(config_.active_window_s);
   int unstable_frames_ = Pace().framesIn(config_.max_unstable_age_s);
   std::size_t memory_ = 0;

@@ -16,11 +16,9 @@ struct SurfelArrays {
   std::vector<float> nx, ny, nz;
   std::vector<float> r, g, b;
   std::vector<float> radius;
-  std::vector<float> weight;      ///< of the running means; a measurement at 1 m counts 1
-  std::vector<float> confidence;  ///< frames at 30 Hz (a frame at 10 Hz counts 3) that supported
-                                  ///< it, less those asked of a newcomer
+  std::vector<float> weight;                ///< of the running means; a measurement at 1 m counts 1
+  std::vector<float> odds;                  ///< that it stands still (nats), see static_odds
   std::vector<std::int32_t> created, seen;  ///< frame numbers: made, last supported
-  std::vector<std::int32_t> violations;     ///< frames that contradict it, less those that support
 
   std::size_t size() const { return x.size(); }
 
@@ -56,7 +54,7 @@ struct SurfelArrays {
     });
   }
 
-  static constexpr std::size_t bytesPerSurfel() { return 12 * sizeof(float) + 3 * sizeof(int32_t); }
+  static constexpr std::size_t bytesPerSurfel() { return 12 * sizeof(float) + 2 * sizeof(int32_t); }
 
  private:
   using Floats = std::vector<float> SurfelArrays::*;
@@ -64,9 +62,8 @@ struct SurfelArrays {
   static constexpr Floats kFloats[] = {
       &SurfelArrays::x,  &SurfelArrays::y,      &SurfelArrays::z,      &SurfelArrays::nx,
       &SurfelArrays::ny, &SurfelArrays::nz,     &SurfelArrays::r,      &SurfelArrays::g,
-      &SurfelArrays::b,  &SurfelArrays::radius, &SurfelArrays::weight, &SurfelArrays::confidence};
-  static constexpr Integers kIntegers[] = {&SurfelArrays::created, &SurfelArrays::seen,
-                                           &SurfelArrays::violations};
+      &SurfelArrays::b,  &SurfelArrays::radius, &SurfelArrays::weight, &SurfelArrays::odds};
+  static constexpr Integers kIntegers[] = {&SurfelArrays::created, &SurfelArrays::seen};
 };
 
 /// Surfels of one fragment of the map.

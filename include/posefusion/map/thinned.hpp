@@ -6,7 +6,7 @@
 namespace pf {
 
 /// One surfel in each cube of `voxel_m` that has any: the mean of position, normal, colour and
-/// radius, weighted by the confidences. In the order in which the cubes come first. Those that are
+/// radius, by their weights. In the order in which the cubes come first. Those that are
 /// not finite are left out, as are cubes whose normals cancel.
 SurfelArrays thinned(const SurfelArrays& surfels, float voxel_m);
 

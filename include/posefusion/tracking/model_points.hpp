@@ -10,9 +10,10 @@
 
 namespace pf {
 
-/// Planes of one size: depth (m, 0 = nothing), unit normal, grey level, support (frames).
+/// Planes of one size: depth (m, 0 = nothing), unit normal, grey level, odds (nats, see
+/// static_odds).
 struct ModelPlanes {
-  cv::Mat depth_m, normal[3], intensity, support;
+  cv::Mat depth_m, normal[3], intensity, odds;
 };
 
 /// The pixels of a model view that show something, as structure of arrays in the view's camera
