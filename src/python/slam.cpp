@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/io/files.hpp"
 
 namespace pf {
