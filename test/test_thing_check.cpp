@@ -138,6 +138,21 @@ TEST(PlaceWatch, AnOldPlaceIsForgottenOnceItsSurfelsAreGone) {
   EXPECT_EQ(place.toldAt(), 5 * kSecond_ns);
 }
 
+TEST(PlaceWatch, OnlyTheTimeCountsInWhichThePlaceIsInView) {
+  View view;
+  view.putBoard(at(2, 0));
+  PlaceWatch place(PlaceWatch::Kind::left, pointsAt(at(2, 0)));
+  place.add(view.after(1, 2.0F));
+  place.add(view.after(2, 4.0F));
+  EXPECT_EQ(place.inViewS(), 0.0);
+  place.add(view.after(4, 4.0F));
+  place.add(view.after(9, 1.0F));  // something stands before it
+  view.map.removeIf([](const SurfelArrays&, std::size_t) { return true; });
+  place.add(view.after(10, 4.0F));
+  EXPECT_EQ(place.toldAt(), 10 * kSecond_ns);
+  EXPECT_NEAR(place.inViewS(), 3.0, 1e-9);
+}
+
 TEST(PlaceWatch, APlaceThatWasNeverMappedIsNotSeenToBeLeft) {
   View view;
   PlaceWatch place(PlaceWatch::Kind::left, pointsAt(at(2, 0)));

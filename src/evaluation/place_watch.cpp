@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "posefusion/core/point_grid.hpp"
+#include "posefusion/core/stamps.hpp"
 
 namespace pf {
 namespace {
@@ -40,6 +41,7 @@ PlaceWatch::PlaceWatch(Kind kind, std::vector<Eigen::Vector3d> points)
       points_(std::move(points)),
       known_(points_.size(), 0),
       shown_(points_.size(), 0),
+      shown_now_(points_.size(), 0),
       mapped_(points_.size(), 0) {}
 
 std::size_t PlaceWatch::known() const { return count(known_); }
@@ -52,9 +54,20 @@ bool PlaceWatch::isSeen() const {
   return shown >= kLeastTaken && share(shown, points_.size()) >= kSeenOfTaken;
 }
 
+double PlaceWatch::shownOfWrong() const {
+  std::size_t wrong = 0, shown = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (known_[i] == 0 || (mapped_[i] != 0) == (kind_ == Kind::taken)) continue;
+    ++wrong;
+    shown += shown_now_[i] != 0 ? 1 : 0;
+  }
+  return share(shown, wrong);
+}
+
 void PlaceWatch::look(const MappedView& view) {
   const Eigen::Isometry3d T_camera_world = view.T_world_camera.inverse();
   for (std::size_t i = 0; i < points_.size(); ++i) {
+    shown_now_[i] = 0;
     const Eigen::Vector3d p = T_camera_world * points_[i];
     if (p.z() < kNearest_m) continue;
     const Eigen::Vector2d pixel = view.camera.project(p);
@@ -63,7 +76,7 @@ void PlaceWatch::look(const MappedView& view) {
     if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) continue;
     const double beyond = view.depth_m.at<float>(v, u) - p.z();
     const bool shows = kind_ == Kind::left ? beyond > kAgrees_m : std::abs(beyond) <= kAgrees_m;
-    if (shows) shown_[i] = 1;
+    if (shows) shown_[i] = shown_now_[i] = 1;
   }
 }
 
@@ -97,13 +110,16 @@ void PlaceWatch::findSurfels(const MappedView& view) {
 
 void PlaceWatch::add(const MappedView& view) {
   if (points_.empty() || told_ns_) return;
-  findSurfels(view);
+  const std::int64_t before_ns = std::exchange(last_ns_, view.stamp_ns);
   if (kind_ == Kind::left && !std::exchange(begun_, true)) {
+    findSurfels(view);
     known_ = mapped_;
     return;
   }
   look(view);
   if (kind_ == Kind::taken) known_ = shown_;
+  if (seen_ns_) in_view_s_ += secondsBetween(before_ns, view.stamp_ns) * shownOfWrong();
+  findSurfels(view);
   if (!seen_ns_ && isSeen()) seen_ns_ = view.stamp_ns;
   if (!seen_ns_) return;
   const bool told = kind_ == Kind::left ? mapped() <= kForgotten : mapped() >= kMapped;

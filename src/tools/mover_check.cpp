@@ -139,6 +139,7 @@ nlohmann::ordered_json toJson(const PlaceWatch& place, std::int64_t since_ns) {
   return {{"known_points", place.known()},
           {"seen_after_s", secondsTo(place.seenAt(), since_ns)},
           {"told_after_s", secondsTo(place.toldAt(), place.seenAt().value_or(since_ns))},
+          {"of_it_in_view_s", place.inViewS()},
           {"mapped", place.mapped()}};
 }
 
@@ -147,11 +148,12 @@ std::string textOf(const PlaceWatch& place) {
   if (!place.seenAt()) {
     std::snprintf(text, sizeof text, place.known() == 0 ? "not known" : "not seen");
   } else if (!place.toldAt()) {
-    std::snprintf(text, sizeof text, "not, %.0f %% of %zu points mapped", 100 * place.mapped(),
-                  place.known());
+    std::snprintf(text, sizeof text, "not, %.0f %% of %zu points mapped (%.1f s)",
+                  100 * place.mapped(), place.known(), place.inViewS());
   } else {
     const auto wait_ns = static_cast<double>(*place.toldAt() - *place.seenAt());
-    std::snprintf(text, sizeof text, "%.1f s", 1e-9 * wait_ns);
+    std::snprintf(text, sizeof text, "%.1f s, of it in view %.1f s", 1e-9 * wait_ns,
+                  place.inViewS());
   }
   return text;
 }

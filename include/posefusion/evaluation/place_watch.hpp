@@ -44,6 +44,9 @@ class PlaceWatch {
   /// When the map told: a tenth or less of what was known is left, or half of what was seen is
   /// there. Not before seenAt().
   std::optional<std::int64_t> toldAt() const { return told_ns_; }
+  /// Of the time from seenAt() to toldAt(), or to the last frame, how long the place was in view
+  /// (s): each frame's time counts by the part that it shows of what the map had wrong.
+  double inViewS() const { return in_view_s_; }
   /// The part of the known points near which the map has a stable surfel, now.
   double mapped() const;
 
@@ -51,11 +54,16 @@ class PlaceWatch {
   void look(const MappedView& view);
   void findSurfels(const MappedView& view);
   bool isSeen() const;
+  /// The part of what the map has wrong that the newest frame shows.
+  double shownOfWrong() const;
 
   Kind kind_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<char> known_, shown_, mapped_;  ///< of each point; shown: seen empty, or taken
+  /// Of each point; shown: seen empty, or taken, by any frame, and by the newest.
+  std::vector<char> known_, shown_, shown_now_, mapped_;
   bool begun_ = false;
+  double in_view_s_ = 0;
+  std::int64_t last_ns_ = 0;
   std::optional<std::int64_t> seen_ns_, told_ns_;
 };
 
