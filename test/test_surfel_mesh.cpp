@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/static_odds.hpp"
 #include "posefusion/mesh/surfel_mesh.hpp"
 
 namespace pf {

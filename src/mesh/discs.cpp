@@ -22,6 +22,13 @@ DiscMaker::DiscMaker(const SurfelArrays& surfels, const MeshConfig& config)
       bridge_m_(static_cast<float>(config.bridge_m)),
       depth_m_(kDepth * cell_m_) {}
 
+float DiscMaker::farthest(const MeshConfig& config) {
+  const auto cell_m = static_cast<float>(config.cell_m),
+             bridge_m = static_cast<float>(config.bridge_m);
+  return std::hypot(kMostRadius * bridge_m + std::max(bridge_m, kDiagonal * cell_m),
+                    kDepth * cell_m);
+}
+
 bool DiscMaker::make(std::size_t i, Disc& disc) const {
   const SurfelArrays& s = surfels_;
   disc.center = {s.x[i], s.y[i], s.z[i]};

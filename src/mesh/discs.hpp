@@ -62,6 +62,9 @@ class DiscMaker {
  public:
   DiscMaker(const SurfelArrays& surfels, const MeshConfig& config);
 
+  /// No point that a disc holds is farther from its centre (m).
+  static float farthest(const MeshConfig& config);
+
   /// False where the surfel has no finite position, normal or radius.
   bool make(std::size_t i, Disc& disc) const;
 

@@ -36,15 +36,10 @@ void validate(const MeshConfig& config) {
           "more than 0 MB");
 }
 
-TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config) {
+TriangleMesh surfelMeshIfAny(const SurfelArrays& surfels, const MeshConfig& config) {
   validate(config);
-  const auto refuse = [&] {
-    throw InputError("mesh: " + std::to_string(surfels.size()) +
-                     " stable surfels are too few for a surface, expected at least " +
-                     std::to_string(config.least_surfels) + " beside each other");
-  };
-  if (surfels.size() == 0) refuse();
   TriangleMesh mesh;
+  if (surfels.size() == 0) return mesh;
   std::vector<char> keep;
   {
     const DiscBlocks blocks = discBlocks(surfels, config);
@@ -56,9 +51,15 @@ TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config) {
     mesh.normals = std::move(painted.normals);
     mesh.colors = std::move(painted.colors);
   }
-  mesh = onlyKept(mesh, keep);
-  if (mesh.triangles.empty()) refuse();
-  return mesh;
+  return onlyKept(mesh, keep);
+}
+
+TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config) {
+  TriangleMesh mesh = surfelMeshIfAny(surfels, config);
+  if (!mesh.triangles.empty()) return mesh;
+  throw InputError("mesh: " + std::to_string(surfels.size()) +
+                   " stable surfels are too few for a surface, expected at least " +
+                   std::to_string(config.least_surfels) + " beside each other");
 }
 
 }  // namespace pf

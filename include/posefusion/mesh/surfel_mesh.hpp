@@ -17,4 +17,7 @@ namespace pf {
 /// the surfels are too few for a single triangle.
 TriangleMesh surfelMesh(const SurfelArrays& surfels, const MeshConfig& config);
 
+/// The same; without a triangle where the surfels are too few.
+TriangleMesh surfelMeshIfAny(const SurfelArrays& surfels, const MeshConfig& config);
+
 }  // namespace pf
