@@ -2,6 +2,7 @@
 """A report as one HTML page that needs no other file and no network."""
 import base64
 import html
+from urllib.parse import quote
 
 STYLE = """
 :root { color-scheme: light; }
@@ -52,6 +53,10 @@ def picture(path, caption):
     data = base64.b64encode(path.read_bytes()).decode()
     return (f'<figure><img src="data:image/png;base64,{data}" alt="{html.escape(caption, quote=True)}">'
             f"<figcaption>{html.escape(caption)}</figcaption></figure>")
+
+
+def link(address, text):
+    return f'<p><a href="{html.escape(quote(str(address)), quote=True)}">{html.escape(text)}</a></p>'
 
 
 def drawing(svg, caption):

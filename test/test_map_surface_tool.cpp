@@ -81,6 +81,33 @@ TEST_F(MapSurfaceToolTest, AMeshThatCannotBeIsRefusedAndNothingIsLeft) {
   EXPECT_TRUE(hasSaid("magic")) << said;
 }
 
+TEST_F(MapSurfaceToolTest, APageLiesBesideTheMapUnlessToldOtherwise) {
+  EXPECT_EQ(run({"view", file}), 0) << said;
+  EXPECT_TRUE(hasSaid("map.html: ")) << said;
+  EXPECT_TRUE(hasSaid("of 4000 surfels in ")) << said;
+  const std::string page = readFile(folder / "map.html");
+  EXPECT_NE(page.find("<title>map.pfdb</title>"), std::string::npos);
+  EXPECT_EQ(run({"view", file, "-o", folder / "b.html", "--surfels", "--title", "A room"}), 0)
+      << said;
+  EXPECT_TRUE(hasSaid("4000 surfels, of 4000")) << said;
+  EXPECT_NE(readFile(folder / "b.html").find("<title>A room</title>"), std::string::npos);
+}
+
+TEST_F(MapSurfaceToolTest, APageThatCannotBeIsRefused) {
+  const std::string out = folder / "a.html";
+  EXPECT_EQ(run({"view", mapWith({}, "empty.pfdb"), "-o", out}), 1);
+  EXPECT_TRUE(hasSaid("0 stable surfels are too few")) << said;
+  EXPECT_EQ(run({"view", folder / "empty.pfdb", "-o", out, "--surfels"}), 1);
+  EXPECT_TRUE(hasSaid("none of 0 stable surfels can be shown")) << said;
+  EXPECT_EQ(run({"view", file, "-o", folder / "a.pdf"}), 1);
+  EXPECT_TRUE(hasSaid("ends in '.pdf', expected .html")) << said;
+  EXPECT_EQ(run({"view", file, "-o", folder / "none/a.html"}), 1);
+  EXPECT_TRUE(hasSaid("none/a.html: cannot be written")) << said;
+  EXPECT_EQ(run({"view", file, "-o", out, "--size-limit", "0"}), 1);
+  EXPECT_TRUE(hasSaid("expected 0.1 to 500 MB")) << said;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST_F(MapSurfaceToolTest, AWallAloneHasNoFloorToStandOn) {
   EXPECT_EQ(run({"grid", file, "-o", folder / "grid.yaml"}), 1);
   EXPECT_TRUE(hasSaid(file + ": the map has no floor: 0 stable surfels face up")) << said;

@@ -56,6 +56,10 @@ class Parts(unittest.TestCase):
         none = error_cell(self.results(None), "ate_m", 2, "own")
         self.assertEqual((none.text, none.kind, none.note, none.value), ("failed", "failed", "it broke", None))
 
+    def test_a_link_leads_where_its_name_says(self):
+        from report_html import link
+        self.assertEqual(link("runs/a b/view.html", "a < b"), '<p><a href="runs/a%20b/view.html">a &lt; b</a></p>')
+
     def test_the_literature_has_sources_and_known_names(self):
         from report_sequences import literature_name
         for entry in LITERATURE["figures"]:

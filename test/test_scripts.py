@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("include", "src", "test", "scripts", "examples", "python", "cmake", ".ci")
-CODE = {".hpp", ".cpp", ".py", ".sh", ".in"}
+CODE = {".hpp", ".cpp", ".py", ".sh", ".in", ".html", ".css", ".js"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
           "mesh", "grid",

@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   const std::string one = own / "one", two = own / "two", first = one + "/latest/";
-  const std::vector<std::string> common = {sequence(), "--detector", "recorded", "--save-masks"};
+  const std::vector<std::string> common = {sequence(), "--detector", "recorded", "--save-masks",
+                                           "--view"};
   const auto with = [&](const std::string& output, const std::string& threads) {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--output", output, "--threads", threads});
@@ -23,7 +24,8 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(run(with(one, "1")), 0) << said;
   EXPECT_TRUE(hasSaid("12 read, 12 tracked, 0 lost")) << said;
   ASSERT_EQ(run(with(two, "2")), 0) << said;
-  for (const char* file : {"trajectory.txt", "map.ply", "map.png", "people.png", "people.json"}) {
+  for (const char* file :
+       {"trajectory.txt", "map.ply", "map.png", "people.png", "people.json", "view.html"}) {
     EXPECT_EQ(readFile(first + file), readFile(two + "/latest/" + file)) << file;
     EXPECT_FALSE(readFile(first + file).empty()) << file;
   }

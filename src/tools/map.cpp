@@ -10,6 +10,7 @@
 #include "map_plans.hpp"
 #include "map_refine.hpp"
 #include "map_surfels.hpp"
+#include "map_view.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
@@ -176,6 +177,7 @@ int lookIntoMap(int argc, char** argv) {
   addPlanCommand(app);
   addOctomapCommand(app);
   addCloudCommand(app);
+  addViewCommand(app);
   return runTool(app, argc, argv, [&] {
     app.act();
     return 0;

@@ -101,6 +101,8 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
                 "CSV to write: state, reason, pose and covariance of each frame");
   app.addOption("--mesh", options.mesh_file,
                 "mesh of the map to write, *.ply, *.obj or *.glb (posefusion_map mesh has more)");
+  app.addFlag("--view", options.view,
+              "write view.html, a page that turns the map in a browser (posefusion_map view)");
   app.addFlag("--check-depth", options.check_depth,
               "compare each frame's depth with the map rendered from its pose (slower)");
   app.addFlag("--print-config", print_config, "print all settings and stop");

@@ -27,6 +27,7 @@ struct RunOptions {
   bool continue_map = false;   ///< write that file on
   std::string status_file;     ///< table of what became of each frame; empty: none
   std::string mesh_file;       ///< mesh of the map to write; empty: none
+  bool view = false;           ///< write a page that turns the map in a browser
   Config config;
 };
 

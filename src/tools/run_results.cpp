@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_results.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/calibration_file.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/map_page.hpp"
 #include "posefusion/io/mesh_file.hpp"
 #include "posefusion/map/stable_surfels.hpp"
 #include "posefusion/mesh/surfel_mesh.hpp"
@@ -17,11 +19,18 @@ constexpr char kJournal[] = "trajectory.partial.txt";
 // Trajectories and summary of an hour at 30 Hz, 130 bytes a pose each.
 constexpr std::int64_t kReserve_bytes = 32'000'000;
 
+/// Of a recording, for people.
+std::string nameOf(const std::string& input) {
+  const auto path = std::filesystem::absolute(input).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 }  // namespace
 
 RunResults::RunResults(const RunOptions& options, const Pipeline& pipeline)
     : pipeline_(pipeline),
       mesh_file_(options.mesh_file),
+      view_title_(options.view ? nameOf(options.input) : ""),
       folder_(options.output, RunFolder::Name::partial),
       reserve_(folder_.file("reserve"), kReserve_bytes),
       journal_(folder_.file(kJournal), "the run is not finished"),
@@ -56,6 +65,15 @@ bool RunResults::attempt(const std::function<void()>& write) {
   }
 }
 
+void RunResults::finishSurfaces() {
+  if (mesh_file_.empty() && view_title_.empty()) return;
+  const Mapper& mapper = pipeline_.mapper();
+  const SurfelArrays surfels = stableSurfels(mapper.map(), mapper.worldFromMap());
+  if (!mesh_file_.empty()) attempt([&] { saveMesh(mesh_file_, surfelMesh(surfels, {})); });
+  if (view_title_.empty()) return;
+  attempt([&] { saveMapPage(folder_.file("view.html"), surfels, view_title_, {}); });
+}
+
 void RunResults::finish(RunReport& report) {
   const Mapper& mapper = pipeline_.mapper();
   reserve_.release();
@@ -70,11 +88,7 @@ void RunResults::finish(RunReport& report) {
   attempt([&] { report.writeSummary(folder_.path(), savedSurfels(mapper.map())); });
   attempt([&] { map_.finish(); });
   attempt([&] { saveMap(folder_.file("map.ply"), mapper.map(), mapper.worldFromMap()); });
-  if (!mesh_file_.empty()) {
-    attempt([&] {
-      saveMesh(mesh_file_, surfelMesh(stableSurfels(mapper.map(), mapper.worldFromMap()), {}));
-    });
-  }
+  finishSurfaces();
   attempt([&] { report.writePictures(folder_.path(), mapper.map()); });
   if (failed_.empty()) {
     folder_.finish();

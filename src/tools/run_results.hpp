@@ -35,10 +35,12 @@ class RunResults {
  private:
   /// False where `write` throws, which is kept for the end.
   bool attempt(const std::function<void()>& write);
+  void finishSurfaces();
   std::string disturbance(const ProcessedFrame& frame);
 
   const Pipeline& pipeline_;
   std::string mesh_file_;
+  std::string view_title_;  // empty: no page
   RunFolder folder_;
   DiskReserve reserve_;
   TrajectoryJournal journal_;
