@@ -2,6 +2,7 @@
 #pragma once
 
 #include <posefusion/BlurScore.h>
+#include <posefusion/CompressedFrame.h>
 #include <posefusion/Keyframe.h>
 #include <posefusion/Keypoint.h>
 #include <posefusion/LoopConstraint.h>
@@ -17,6 +18,7 @@ namespace posefusion_ros {
 
 // The messages of the package (namespace posefusion) beside the core's values (namespace pf).
 using BlurScoreMsg = posefusion::BlurScore;
+using CompressedFrameMsg = posefusion::CompressedFrame;
 using KeyframeMsg = posefusion::Keyframe;
 using KeypointMsg = posefusion::Keypoint;
 using LoopConstraintMsg = posefusion::LoopConstraint;

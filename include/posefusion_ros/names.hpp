@@ -11,6 +11,10 @@ constexpr char kColor[] = "rgb/image_color";
 constexpr char kDepth[] = "depth_registered/image";
 constexpr char kCameraInfo[] = "rgb/camera_info";
 constexpr char kDepthCameraInfo[] = "depth_registered/camera_info";
+// From machine to machine: of the packer, below its own namespace, and as the unpacker looks for
+// it.
+constexpr char kCompressedFrame[] = "compressed_frame";
+constexpr char kCompressedFrameOfRobot[] = "/robot/compressed_frame";
 // Gate.
 constexpr char kSharpColor[] = "sharp/image_color";
 constexpr char kSharpDepth[] = "sharp/depth";

@@ -50,8 +50,9 @@ std::vector<std::string> declaredArguments(const std::string& launch_file) {
 }
 
 /// roslaunch itself ignores arguments that a launch file does not have. Only where this launch file
-/// is the one that was called: otherwise the arguments are those of another one.
-void checkArguments(const std::string& launch_file) {
+/// is the one that was called: otherwise the arguments are those of another one. `included` is one
+/// that takes all its arguments; may be empty.
+void checkArguments(const std::string& launch_file, const std::string& included) {
   const std::string called = fs::path(launch_file).filename().string();
   const std::vector<std::string> words = posefusion_ros::parentCommand();
   int files = 0;
@@ -62,7 +63,10 @@ void checkArguments(const std::string& launch_file) {
     if (path.filename() != called) return;
   }
   if (files != 1) return;
-  const std::vector<std::string> names = declaredArguments(launch_file);
+  std::vector<std::string> names = declaredArguments(launch_file);
+  if (!included.empty()) {
+    for (const auto& name : declaredArguments(included)) names.push_back(name);
+  }
   for (const auto& word : words) {
     const std::string name = split(word).first;
     if (name.empty() || name.front() == '_') continue;  // __log:=, _private:=
@@ -182,7 +186,7 @@ void checkInput(const Given& given, const pf::Config& config,
 }
 
 void check(const std::string& launch_file, const Given& given) {
-  checkArguments(launch_file);
+  checkArguments(launch_file, given["includes"]);
   given.checkFlags(given["flags"]);
   const pf::Config config = configOf(given);
   if (given["without_people_if_no_detector"] != "true") checkDetector(config.pose);
