@@ -12,7 +12,7 @@ namespace {
 
 struct Neighbour {
   int right, down;
-  float factor;  // a diagonal edge stands for less of the border's length
+  float factor;  // a diagonal edge represents less of the border's length
 };
 constexpr float kDiagonal = 0.707F;
 constexpr std::array<Neighbour, 4> kNeighbours{

@@ -13,22 +13,22 @@ namespace {
 
 constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask around its person
 
-// Somebody new, by a detector that gives a mask with every frame.
+// A new person, found by a detector that gives a mask with every frame.
 constexpr float kSureNewScore = 0.7F;  // believed without the map
-constexpr float kShownNew = 0.5F;      // probability of the cells that are asked about
-// Of those that the map knows, this part stands before it: the others may be on what was mapped of
-// them while they came in, which it has seen for a few frames only. Furniture that looks like
+constexpr float kShownNew = 0.5F;      // least probability of the cells considered
+// Of those that the map knows, this part lies in front of it: the others may be on what was mapped
+// of them while they came in, which it has seen for a few frames only. Furniture that looks like
 // people agrees with it, and stands before it nowhere.
 constexpr float kNearerNew = 0.15F;
 constexpr float kMostAgreeingNew = 0.5F;
 
-// Who stands before the map.
+// A person in front of the map.
 constexpr float kKnownBefore = 0.5F;   // it knows this part of the cells ...
-constexpr float kNearerBefore = 0.7F;  // ... of which this part stands before it
+constexpr float kNearerBefore = 0.7F;  // ... of which this part lies in front of it
 
-// A person who is part of the map by mistake.
+// A person that is part of the map by mistake.
 constexpr double kInMap_s = 1.0 / 3.0;  // for so long after a sure detection
-constexpr float kMinKnownSeeds = 3.0F;  // seeds on which the map has a say, of which ...
+constexpr float kMinKnownSeeds = 3.0F;  // seeds where the map is known, of which ...
 constexpr float kInMapPart = 0.6F;      // ... this part agrees, for a person to be in the map
 
 /// Cells of the carried mask, at the person's depth, that lie in front of the known background.

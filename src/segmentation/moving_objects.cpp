@@ -14,13 +14,13 @@ namespace {
 
 // Noise along an edge is one or two cells thin.
 constexpr int kLeastThickness = 3;  // cells
-// Less of a surface (m2) than a hand is nothing.
+// A surface (m2) smaller than a hand is no object.
 constexpr double kLeastArea_m2 = 0.006;
 constexpr int kLeastSeeds = 12;
-// Part of a piece, of that known of a moment, whose place was empty then: what moves has more, what
-// stands has less.
+// Part of a piece's known cells whose place was empty at an earlier moment: moving objects have
+// more, static ones less.
 constexpr double kMovingPart = 0.10;
-// A moment says something of a piece of which it knows this part.
+// A moment counts for a piece if it knows this part of its cells.
 constexpr double kKnownPart = 0.2;
 // Evidence is no more than this (frames at 30 Hz): what has come to rest counts as static after
 // half a second without any.

@@ -13,8 +13,7 @@ namespace pf {
 
 namespace {
 
-/// `objects`: in uncorrected coordinates. Told where the place of the map is known to those who use
-/// it.
+/// Reports `objects` (in uncorrected coordinates) where the pose of the map in the world is known.
 void tell(const ModelView& view, const std::vector<MovingObject>& objects, Segmentation& result) {
   if (view.fragment != kFirstFragment || !view.T_world_map) return;
   const Eigen::Isometry3d T_world_uncorrected = *view.T_world_map * view.T_map_uncorrected;
@@ -29,7 +28,7 @@ PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config, const DepthSe
     : config_(config), sensor_(sensor), state_(std::make_unique<State>(sensor)) {}
 PeopleSegmenter::~PeopleSegmenter() = default;
 
-/// False when there is nobody. Else `labels` are the people's.
+/// False when there are no people. Else `labels` are the people's.
 bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowTracker& flow,
                                  const People& people) {
   State& s = *state_;
@@ -47,7 +46,7 @@ bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowTracker& flow
   return true;
 }
 
-/// What is told of the people, and kept for the next frame.
+/// The people as reported, and as kept for the next frame.
 void PeopleSegmenter::keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result) {
   State& s = *state_;
   result.in_map_mask = s.inMapMask(frame, result.mask);

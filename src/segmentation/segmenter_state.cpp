@@ -19,7 +19,7 @@ constexpr float kFadedLikelihood = 0.08F;  // ... until they are dropped
 
 // How much each frame (at 30 Hz) without a detection ages a carried person.
 constexpr double kAgeing = 1.0;
-constexpr double kConfirmedAgeing = 0.25;  // the map shows that somebody stands before it
+constexpr double kConfirmedAgeing = 0.25;  // the map confirms a person in front of it
 constexpr double kBlindAgeing = 3.0;       // no map: the mask may leak into furniture unnoticed
 
 constexpr double kMarginWidth_px = 640.0;  // image width that margin_px is given for
@@ -110,8 +110,8 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
     tracked.unseen += worth * (confirmed ? kConfirmedAgeing : blind ? kBlindAgeing : kAgeing);
     fadeLostJoints(evidence.grid, labels, worth, tracked.person);
   }
-  const auto isNobody = [](const TrackedPerson& t) { return t.cells.size() < kMinMaskCells; };
-  people.erase(std::remove_if(people.begin(), people.end(), isNobody), people.end());
+  const auto isTooSmall = [](const TrackedPerson& t) { return t.cells.size() < kMinMaskCells; };
+  people.erase(std::remove_if(people.begin(), people.end(), isTooSmall), people.end());
 }
 
 cv::Mat PeopleSegmenter::State::inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const {

@@ -13,7 +13,7 @@ namespace {
 constexpr float kSure = 0.85F;  // probability
 constexpr float kDenied = 0.25F;
 constexpr float kMostFor = 4.0F, kMostAgainst = 1.5F;  // log-odds
-constexpr float kMostAgainstUnshown = 0.3F;            // of people whom the mask does not show
+constexpr float kMostAgainstUnshown = 0.3F;            // of people that the mask does not show
 constexpr float kFloor = 0.004F;                       // of a probability: a step of the mask
 constexpr std::size_t kRowsAtOnce = 16;
 
@@ -30,7 +30,7 @@ float bilinear(const cv::Mat& bytes, const cv::Point2f& at) {
          b * ((1 - a) * lower[x0] + a * lower[x1]);
 }
 
-/// The person of the cell itself, or of one beside it; -1: nobody.
+/// The person of the cell itself, or of one beside it; -1: no person.
 int personAt(const cv::Mat& owner, const cv::Point2f& at) {
   const int x0 = static_cast<int>(std::lround(at.x)), y0 = static_cast<int>(std::lround(at.y));
   if (x0 < 0 || y0 < 0 || x0 >= owner.cols || y0 >= owner.rows) return -1;

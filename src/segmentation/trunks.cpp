@@ -18,7 +18,7 @@ constexpr float kMaxSpread_m = 0.30F;  // of the joints in depth
 constexpr float kMaxOff_m = 0.15F;     // of a cell from the mean of the joints
 constexpr float kBeyondJoints = 1.2F;  // the trunk is larger by this: joints lie inside the body
 
-/// The outline of a trunk in cells, and its depth; no outline where it cannot be told.
+/// The outline of a trunk in cells, and its depth; no outline where it is not known.
 struct Trunk {
   std::vector<cv::Point> outline;
   float depth_m = 0.0F;

@@ -16,7 +16,7 @@ enum class Background : std::uint8_t {
   unknown,  ///< the map has nothing there, or the cell has no depth
   agrees,   ///< the cell is a surface of the map
   recent,   ///< the cell is a surface that the map has seen for a few frames only: perhaps a person
-            ///< who was missed
+            ///< that was missed
   nearer,   ///< the cell lies clearly in front of everything that the map has there
   farther   ///< the cell is seen through a surface of the map
 };

@@ -30,7 +30,7 @@ struct Body {
 /// Lifts a person: joints, and samples along limbs between seen joints, get the median depth of
 /// their neighbourhood; samples far from the person's median depth (lifted onto the wall behind or
 /// the table in front) are dropped. Where `near_depth_m` is above 0, the median must be close to
-/// it: so a person who is carried forward does not jump to another who walks in front.
+/// it: so a carried person does not jump to another person walking in front.
 Body liftPerson(const Person& person, const SceneGrid& grid, float near_depth_m = 0.0F);
 
 }  // namespace pf

@@ -19,7 +19,7 @@ SkeletonPoints liftSkeleton(const Person& person, const std::vector<int>& cells,
 /// Places people in the map, and follows their velocity. Not thread safe.
 class PeopleInMap {
  public:
-  /// The people who are seen, those with cells, in uncorrected coordinates (see ModelView).
+  /// The visible people (those with cells) in uncorrected coordinates (see ModelView).
   /// `T_uncorrected_camera`: of the frame, as far as known.
   std::vector<MovingObject> place(const std::vector<TrackedPerson>& people, const SceneGrid& grid,
                                   const Eigen::Isometry3d& T_uncorrected_camera,

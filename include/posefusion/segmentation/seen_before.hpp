@@ -21,13 +21,13 @@ class SeenBefore {
   /// The moments that are asked, so long ago: what is fast shows soon, what is slow later.
   static constexpr std::array<double, 3> kAges_s = {0.2, 0.5, 1.0};
 
-  /// Takes in a frame's grid. `camera`: of the frame. Its pose is what know() tells.
+  /// Takes in a frame's grid. `camera`: of the frame. know() gives its pose later.
   void add(const SceneGrid& grid, const PinholeCamera& camera, std::int64_t stamp_ns);
 
-  /// A view has the pose of the frame whose stamp it has. In another fragment all is forgotten.
+  /// A view gives the pose of the frame with the same stamp. In another fragment all is forgotten.
   void know(const ModelView& view);
 
-  /// What each moment says of the cells of a frame at `stamp_ns`, seen from T_uncorrected_camera:
+  /// What each moment shows of the cells of a frame at `stamp_ns`, seen from T_uncorrected_camera:
   /// `nearer` = the place was seen to be empty, `agrees` = the same surface was there, `farther` =
   /// something stood before it. Where there is no such moment all are unknown.
   void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,

@@ -16,7 +16,7 @@
 
 namespace pf {
 
-/// Nobody farther (m) is looked for: depth cameras tell no person from a wall there.
+/// People farther away (m) are not searched for: depth cameras cannot separate them from a wall.
 constexpr double kFarthestPerson_m = 8.0;
 
 /// A frame without its people, and without what else moves.
@@ -43,8 +43,8 @@ class PeopleSegmenter {
   explicit PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor = {});
   ~PeopleSegmenter();
 
-  /// `flow` has been advanced to this frame (once for each frame, also while there is nobody): it
-  /// carries people from the last frame into this one. After a change of the image size nobody is
+  /// `flow` has been advanced to this frame (once for each frame, also without people): it carries
+  /// people from the last frame into this one. After a change of the image size no person is
   /// carried. `background` is the map rendered at the last trusted pose, with the stamp of its
   /// frame: what agrees with it is no person. Null while there is no map or the camera is lost in
   /// it: nothing is known of the background then, and people are carried a third as long.

@@ -9,10 +9,10 @@
 
 namespace pf {
 
-/// What a detector's mask says of the cells of the grid. Both empty: it gave none.
+/// A detector's mask on the cells of the grid. Both empty: it gave no mask.
 struct ShownPeople {
   std::vector<float> probability;       ///< 0..1, of a person
-  std::vector<std::int16_t> detection;  ///< index of the person in the detection, -1: nobody
+  std::vector<std::int16_t> detection;  ///< index of the person in the detection, -1: no person
 
   bool empty() const { return probability.empty(); }
 
@@ -29,10 +29,10 @@ void sampleMask(const PersonMask& mask, const cv::Size& image, const SceneGrid& 
 /// denies a cell tells little.
 float shownTerm(const ShownPeople& shown, int cell, bool is_shown);
 
-/// The mask says that the cell is a person's, for sure.
+/// The mask surely shows a person in the cell.
 bool isShown(const ShownPeople& shown, int cell);
 
-/// The mask says that the cell is nobody's.
+/// The mask shows no person in the cell.
 bool isDenied(const ShownPeople& shown, int cell);
 
 }  // namespace pf

@@ -36,8 +36,8 @@ void dropJointsOutside(const SceneGrid& grid, float margin_px, Person& person);
 void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
-/// Puts newly detected people in the place of the carried ones they continue; of the others those
-/// are added that `may_be_new` allows (one for each detection). A detection continues the
+/// Replaces carried people by the new detections that continue them; the other detections are added
+/// where `may_be_new` (one for each detection) allows it. A detection continues the
 /// carried person whose mask holds most of its joints, at least a third. Joints that the detector
 /// missed this time are kept from before. `worth`: of the frame, see Pace.
 void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,

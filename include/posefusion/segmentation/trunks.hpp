@@ -9,10 +9,10 @@
 
 namespace pf {
 
-/// What the map has between the shoulders and hips of somebody detected for sure in this frame, at
-/// the depth of those four joints, is that person, who was mapped while hidden or missed: agreement
-/// with it becomes `recent`. None of the joints may lie on a plane: hips do that the back of a
-/// chair hides, and a picture on a wall.
+/// A map surface between the shoulders and hips of a person surely detected in this frame, at the
+/// depth of those four joints, is that person, mapped while hidden or missed: agreement with it
+/// becomes `recent`. None of the joints may lie on a plane, as hips behind the back of a chair and
+/// a picture on a wall do.
 void doubtTrunks(const std::vector<TrackedPerson>& people, const SceneGrid& grid,
                  const std::vector<Flatness>& flatness, std::vector<Background>& background);
 
