@@ -7,7 +7,7 @@
 namespace pf {
 namespace {
 
-// A longer gap is a pause, which tells nothing of the pace.
+// A longer gap is a pause, which does not count for the pace.
 constexpr double kLongestGap_s = 1.0;
 constexpr double kMostFrames = 1e9;
 constexpr double kParts = 4.0;  // of the worth of a frame at 30 Hz

@@ -62,7 +62,7 @@ const std::vector<std::string>& sensorKinds() {
 
 void visitFields(SensorConfig& c, FieldVisitor& v) {
   v.choice("kind", c.kind, {kAnySensor, sensorKinds()[0], sensorKinds()[1], sensorKinds()[2]},
-           "how the depth camera measures, which tells its errors (docs/sensor.md); auto: what a "
+           "how the depth camera measures, which gives its errors (docs/sensor.md); auto: what a "
            "recording's camera file says, else structured_light, a Kinect 1 or Xtion");
   v.number("axial_sigma_m", c.axial_sigma_m, 0.0, 1.0,
            "smallest standard deviation of depth; this and the next numbers: 0 = that of the kind");

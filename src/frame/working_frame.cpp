@@ -10,8 +10,8 @@
 namespace pf {
 namespace {
 
-// Depth past the largest used still tells that the space before it is empty, up to here: no sensor
-// of a robot's measures farther indoors, and some report their largest number for "nothing".
+// Depth past the largest used still shows that the space in front of it is empty, up to here: no
+// sensor of a robot's measures farther indoors, and some report their largest number for "nothing".
 constexpr double kFarthest_m = 15.0;
 constexpr double kFocal_px = 262.5;  // of a Kinect at 320x240
 constexpr int kMostShrink = 8;

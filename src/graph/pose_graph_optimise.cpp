@@ -195,7 +195,7 @@ Deformation PoseGraph::deformationTo(const std::vector<Keyframe>& corrected) con
   return Deformation(version_, std::move(nodes), join);
 }
 
-/// Whether the poses are where the loop wants them, as far as any loop can tell.
+/// Whether the poses are where the loop wants them, as far as any loop can measure.
 bool PoseGraph::isMet(const PoseConstraint& loop) const {
   const auto pose = [&](int i) { return keyframes_[static_cast<std::size_t>(i)].T_map_camera; };
   return isWithin(loop.T_from_to.inverse() * pose(loop.from).inverse() * pose(loop.to),
@@ -211,9 +211,9 @@ ClosedLoops PoseGraph::close(const std::vector<PoseConstraint>& loops) {
     closed.deformations.push_back(std::move(result.deformation));
     return true;
   };
-  for (const PoseConstraint& told : loops) {
-    throwUnlessBetween(told, keyframes_.size());
-    const auto loop = inUse(told);
+  for (const PoseConstraint& reported : loops) {
+    throwUnlessBetween(reported, keyframes_.size());
+    const auto loop = inUse(reported);
     if (!loop) continue;
     if (fragmentOf(loop->from) == fragmentOf(loop->to)) {
       addLoop(*loop);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keyframes that others stand for: a graph grows with the places that were seen, not with the time.
+// Keyframes that others represent: a graph grows with the places seen, not with time.
 #include <algorithm>
 
 #include "posefusion/graph/pose_graph.hpp"

@@ -20,7 +20,7 @@ constexpr std::size_t kFernMatches = 2;
 constexpr std::size_t kPlacesLike = 12;
 constexpr int kAtAPlace = 3;
 constexpr double kPlace_m = 1.5;
-// The two directions of a pair must tell the same.
+// The two directions of a pair must agree within this.
 constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
 FernConfig fernConfig(const LoopConfig& config, const DepthSensor& sensor) {

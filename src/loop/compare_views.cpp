@@ -14,7 +14,7 @@ constexpr float kMinNormalCosine = 0.7F;
 // normals: those of single pixels are noise where the depth is, far away and in small pictures.
 constexpr int kWindow = 16;
 constexpr double kLeastPixels = 0.3;     // of a window
-constexpr double kLeastVariance = 40.0;  // of grey levels: less texture tells nothing
+constexpr double kLeastVariance = 40.0;  // of grey levels: less texture is not compared
 
 /// Sums over a window: of grey levels, for the correlation, and of where the depths agree.
 struct WindowSums {

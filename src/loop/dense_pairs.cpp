@@ -12,10 +12,10 @@
 namespace pf {
 namespace {
 
-// Of a keyframe, with later ones: each pair is some milliseconds of work, and more of them hardly
-// tell more.
+// Of a keyframe, with later ones: each pair is some milliseconds of work, and more pairs hardly add
+// information.
 constexpr std::size_t kPairsOfView = 8;
-// The two directions of a pair must tell the same.
+// The two directions of a pair must agree within this.
 constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
 const KeyframeView* find(const std::vector<const KeyframeView*>& views, int id) {

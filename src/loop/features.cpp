@@ -17,7 +17,7 @@ constexpr int kLeastInliers = 12;
 constexpr int kTries = 400;
 constexpr float kSigmas = 3.0F;
 constexpr double kLateralSigmas = 4.0;
-constexpr double kLeastSide_m = 0.15;  // of a triangle: smaller ones tell no rotation
+constexpr double kLeastSide_m = 0.15;  // of a triangle: smaller ones give no rotation
 constexpr std::uint32_t kMagic = 0x54464650, kVersion = 1;  // "PFFT"
 
 using Pairs = std::vector<std::pair<int, int>>;

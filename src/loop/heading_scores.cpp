@@ -11,7 +11,7 @@ namespace {
 
 // A correct pose and a wrong one may both look grey: the correlation counts half of the shape.
 constexpr float kGreyShare = 0.5F;
-constexpr float kLeastSpread = 30.0F;  // variance of grey levels below which they tell nothing
+constexpr float kLeastSpread = 30.0F;  // variance of grey levels below which they are not used
 constexpr double kLeastFacing = 0.2;
 
 /// Sums of one pixel for all headings.

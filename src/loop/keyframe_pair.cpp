@@ -43,7 +43,7 @@ void KeyframePicture::assign(const KeyframeView& view, const DepthSensor& sensor
   model.normal_z = level.normal_z;
   model.intensity = level.intensity;
   model.odds.create(level.depth_m.size(), CV_32FC1);
-  model.odds.setTo(static_odds::kMost);  // a keyframe stands for itself
+  model.odds.setTo(static_odds::kMost);  // all of a keyframe counts as static
   points.assign(model, sensor);
 }
 

@@ -14,7 +14,7 @@ namespace pf {
 namespace {
 
 constexpr double kBin_rad = 0.033;  // of the panorama, about: a pixel of the query and a bit
-// The corner of a picture is farther than its depth, along the axis, tells.
+// The corner of a picture is farther away than its depth, which is along the axis.
 constexpr double kCornerRange = 1.2;
 constexpr double kSameTilt_rad = 0.03;
 constexpr double kSameHeight_m = 0.05;

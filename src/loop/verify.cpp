@@ -71,7 +71,7 @@ PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_cand
   if (v.agreement.view < limits.min_view) return PlaceDoubt::covered;
   if (v.agreement.overlap < limits.min_overlap) return PlaceDoubt::little_overlap;
   if (!v.alignment.converged) return PlaceDoubt::not_converged;
-  // Somebody or something new before the map does not speak against the place, up to a point.
+  // A person or thing new in front of the map does not contradict the place, up to a point.
   const double visible = 1.0 - v.agreement.hidden;
   const bool both = v.agreement.spread >= limits.shape_of_both &&
                     v.agreement.correlation >= limits.correlation_of_both;

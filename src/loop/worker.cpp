@@ -139,7 +139,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
 }
 
 std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
-  // Features tell soonest, where they tell; drawing the map finds the rest.
+  // Features are the fastest where they find the place; drawing the map finds the rest.
   std::vector<PlaceCandidate> like;
   for (const MapPose& pose : closer_.placesLike(keyframeView(question.frame, 0, {}, true))) {
     if (question.admits(pose)) like.emplace_back().pose = pose;

@@ -11,7 +11,7 @@ namespace pf {
 /// The space around the people of a frame, as a coarse grid over the picture.
 class NearPeople {
  public:
-  /// How far somebody who walks in gets in a third of a second.
+  /// How far a person walking in gets in a third of a second.
   static constexpr float kReach_m = 0.3F;
 
   /// `people_m`: depth of people, 0 = none, size of the working camera's picture. Reuses memory.

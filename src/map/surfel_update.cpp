@@ -20,15 +20,15 @@ constexpr float kParallelCosine = 0.9F;
 constexpr double kAnotherPass_s = 10.0 / 3.0;
 // Few stable surfels are doubled: those of a block are looked at once in so many frames.
 constexpr int kTurns = 4;
-// Who is found now may have been in view, and mapped, for so long; that must be gone before it is
-// older.
+// A person found now may have been in view, and mapped, for this long; such surfels must be removed
+// before they are older.
 constexpr double kUnnoticed_s = 1.5;
 constexpr float kUnnoticedFrames = 2;  // of contradiction, a frame
-// Frames that one counts for which sees through a surfel, and through all around it.
+// A frame that sees through a surfel, and through all around it, counts for this many frames.
 constexpr float kSeenFarThrough = 2;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
-// What stands so far before a stable surface may have come there.
+// What lies this far in front of a stable surface may have come there.
 constexpr float kWellBefore_m = 0.25F;
 
 }  // namespace
@@ -135,8 +135,8 @@ bool SurfelUpdate::isFarFromRims(const Place& p, float beyond_m) const {
   return true;
 }
 
-/// What was made close to somebody not long ago, and is not seen now, may be what was mapped of
-/// them before they were found: it goes also where nothing is seen behind it.
+/// Surfels made close to a person not long ago, and not seen now, may have been mapped from that
+/// person before detection: they are removed also where nothing is seen behind them.
 void SurfelUpdate::doubt(SurfelArrays& s, std::size_t i, const Place& p) const {
   const bool is_young = s.created[i] > map_.frame() - unnoticed_;
   if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) contradictOne(s, i, kUnnoticedFrames);

@@ -38,11 +38,11 @@ class Explanation {
 /// Says of a pixel that no surfel agrees with it.
 constexpr std::int64_t kUnexplained = std::numeric_limits<std::int64_t>::max();
 
-/// What a frame says about the space along its pixels' rays. Planes have the working frame's size.
+/// Evidence of a frame on the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
-  cv::Mat person_m;  ///< CV_32FC1: depth of a person whom the map has, 0 = none; may be empty
-  NearPeople near_people;  ///< around everybody in view
+  cv::Mat person_m;  ///< CV_32FC1: depth of a person in the map, 0 = none; may be empty
+  NearPeople near_people;  ///< around all people in view
   /// Per pixel an Explanation; one made in this frame where only unstable surfels agree.
   std::vector<std::int64_t> explained;
   KnownBehind known_behind;

@@ -10,8 +10,8 @@ namespace {
 
 // Outside the picture by so much (pixels) still counts as in view: fusion rounds to whole pixels.
 constexpr double kMargin_px = 1.0;
-// Those who go by the list turn surfels into the camera's frame in floats, which are off by less up
-// to kilometres from the origin.
+// Users of the list transform surfels into the camera's frame in floats, whose error is below this
+// up to kilometres from the origin.
 constexpr double kRounding_m = 1e-3;
 
 /// A half space in the map frame: inside where normal . x + offset >= 0 (m).

@@ -8,9 +8,9 @@
 namespace pf {
 namespace {
 
-constexpr int kMinShare = 3;  // somebody is whom the mask shows at 1/3 of the joints
+constexpr int kMinShare = 3;  // a person needs 1/3 of its joints on one person of the mask
 
-/// The person of the mask on whom most joints lie; -1: nobody.
+/// The person of the mask that holds most joints; -1: no person.
 int shownPerson(const Person& person, const People& embedded, const MaskGrid& grid) {
   std::vector<int> joints(embedded.people.size() + 1, 0);
   int seen = 0;

@@ -14,15 +14,15 @@ namespace {
 
 constexpr float kMinMask = 0.4F;        // probability of a cell that has a vote
 constexpr float kMinJoint = 0.2F;       // height of a peak that is a joint
-constexpr int kScoredJoints = 6;        // whose mean is the person's score
+constexpr int kScoredJoints = 6;        // their mean is the person's score
 constexpr float kJointReach_m = 0.50F;  // of a joint's vote
-constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is nobody
-// Whom the border cuts shows few joints. What the mask says is then worth as much as joints that
-// are so much less likely.
+constexpr float kMinArea_m2 = 0.015F;   // of a group's cells, as seen: less is no person
+// A person cut by the image border shows few joints. The mask then counts as much as joints that
+// are less likely by this.
 constexpr float kCutArea_m2 = 0.05F;
 constexpr float kMaskAboveJoints = 0.2F;
 
-/// What the mask says of a group.
+/// Sums of the mask over a group.
 struct MaskSums {
   float weight = 0.0F, cells = 0.0F;
   bool at_border = false;  // sensors see nothing in the outermost pixels: the next cell counts too
@@ -98,7 +98,7 @@ cv::Point2f centroid(const cv::Mat& map, int x, int y) {
   return {static_cast<float>(4.0 * sum_x / sum + 1.5), static_cast<float>(4.0 * sum_y / sum + 1.5)};
 }
 
-/// The person whose centre a joint votes for; -1: nobody.
+/// The person whose centre a joint votes for; -1: no person.
 int personOf(const InputCamera& camera, const std::vector<Group>& groups, const cv::Point2f& vote,
              float z) {
   int best = -1;
@@ -134,7 +134,7 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
   }
 }
 
-/// The mean of the best joints, which those who have fewer miss.
+/// The mean of the best joints; missing joints count as 0.
 float scoreOfJoints(const Person& person) {
   std::array<float, kJointCount> p{};
   for (std::size_t j = 0; j < p.size(); ++j) p[j] = person.joints[j].p;

@@ -18,7 +18,7 @@ constexpr float kSureNewScore = 0.7F;  // believed without the map
 constexpr float kShownNew = 0.5F;      // least probability of the cells considered
 // Of those that the map knows, this part lies in front of it: the others may be on what was mapped
 // of them while they came in, which it has seen for a few frames only. Furniture that looks like
-// people agrees with it, and stands before it nowhere.
+// people agrees with it, and nowhere lies in front of it.
 constexpr float kNearerNew = 0.15F;
 constexpr float kMostAgreeingNew = 0.5F;
 

@@ -12,14 +12,13 @@ namespace pf {
 namespace {
 
 constexpr double kNanosecond = 1e-9;
-// Dead reckoning: for how long, and at what speed, corners alone give a pose good enough to be
-// told.
+// Dead reckoning: for how long, and at what speed, corners alone give a pose good enough to report.
 constexpr double kMaxReckoning_s = 0.6;
 constexpr int kManyCorners = 80;
 constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr double kMaxReckoned_m_s = 1.2, kMaxReckoned_rad_s = 1.8;
-// A blurred frame is not told where its alignment needs its corners, or they contradict it by more:
-// in a turn they do not, in a fall they do.
+// The pose of a blurred frame is not reported where alignment needs its corners, or they contradict
+// it by more than this: in a turn they do not, in a fall they do.
 constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr double kProbation_s = 2.0;
 
@@ -133,8 +132,8 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   untrusted_in_a_row_ = reckoned_in_a_row_ = 0;
 }
 
-/// Whether the pose by the prediction alone is good enough to be told: by many corners, for a short
-/// time; or with the robot's odometry as long as it is known as well as at a searched place.
+/// Whether the predicted pose alone is good enough to report: by many corners, for a short time; or
+/// with the robot's odometry as long as it is known as well as at a searched place.
 bool Localiser::isReckonedWell(const Location& location, const PosePrior& prior,
                                double reckoned_s) const {
   const SparseMotion& motion = location.motion;
@@ -146,7 +145,8 @@ bool Localiser::isReckonedWell(const Location& location, const PosePrior& prior,
                   kMaxReckoned_rad_s * pace_.frame_s);
 }
 
-/// Not believed: the pose is carried on by the prediction, and told for as long as that is good.
+/// The frame is not trusted: the prediction continues the pose, which is reported as long as it is
+/// good.
 void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns) {
   ++untrusted_in_a_row_;
   const double reckoned_s = kNanosecond * static_cast<double>(stamp_ns - seen_ns_);

@@ -27,16 +27,15 @@ constexpr double kMaxBlind_s = 0.25, kMaxBlind_m = 0.15;
 // a fall a blurred frame fits the map at more places than its own, and its corners are not good.
 constexpr double kMaxForcedWay_m = 0.12;
 
-// Where people leave no more of the picture than this, the camera has to be known as well as at a
-// place that was searched. Of what is left to see, corners often tell alone, and some lie on people
-// who were missed.
+// Where people leave no more of the picture than this, the pose must be as accurate as at a
+// searched place: often only corners remain, and some lie on people that were missed.
 constexpr double kLittleView = 0.4;
 
 int proofsIn(double seconds, const Pace& pace) {
   return std::max(kFewestProofs, pace.framesIn(seconds));
 }
 
-/// Says how badly a pose is known that little of the picture tells of; empty: well enough.
+/// Describes how badly a pose from little of the picture is known; empty: well enough.
 std::string poorlyKnown(const WorkingFrame& frame, const TrackingResult& tracking) {
   if (frame.valid_pixels >= kLittleView * static_cast<double>(frame.depth_m.total())) return {};
   const double sigma_m = positionSigma(tracking.covariance);
@@ -113,7 +112,7 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   const bool fits = follows || std::exchange(is_suggested_, false);
   proofs_ = looks_right ? (fits ? proofs_ : 0) + (is_blurred ? 0 : 1) : 0;
   is_place_verified_ = is_place_verified_ && looks_right && fits;
-  // A place that was verified may be left for a view that hardly tells where it is from.
+  // After a verified place the next view may hardly constrain the pose.
   const bool is_unsure = is_place_verified_ &&
                          positionSigma(location.tracking.covariance) > VerifyLimits().max_sigma_m;
   if (is_unsure) proofs_ = std::min(proofs_, needed - 1);

@@ -104,7 +104,7 @@ double LoopExchange::oldestWaitsS() const {
   return std::chrono::duration<double>(since).count();
 }
 
-/// Where a lost camera is does not wait for what else there is to be told or asked.
+/// Relocalisation is asked separately, so that it does not wait for the rest of the question.
 void LoopExchange::askInParts(LoopQuestion question) {
   LoopQuestion place;
   place.stamp_ns = question.stamp_ns;
@@ -140,7 +140,7 @@ std::deque<LoopExchange::Asked>::iterator LoopExchange::findDue(const Mapper& ma
 void LoopExchange::take(std::deque<Asked>::iterator which, Mapper& mapper) {
   const Asked asked = *which;
   asked_.erase(which);
-  // Where there is no answer the mapper is told that nothing was found, so that it asks again.
+  // Without an answer the mapper gets "nothing found", so that it asks again.
   LoopAnswer nothing;
   nothing.asked_for_place = asked.isForPlace();
   std::optional<LoopAnswer> answer;

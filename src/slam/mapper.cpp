@@ -85,7 +85,7 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   seen.stamp_ns = view.stamp_ns = last_stamp_ns;
 }
 
-/// Where a frame was believed that is not to be fused. `fill`: it stands for the map where there is
+/// Follows a located frame that is not to be fused. `fill`: it fills in for the map where there is
 /// none.
 void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();

@@ -92,7 +92,7 @@ void Mapper::State::finishDepth(DepthImprovement& depth,
   depthHasChanged(depth.of_frames);
 }
 
-/// Pictures of keyframes that others stand for.
+/// Drops the pictures of keyframes that others represent.
 void Mapper::State::retireViews(const std::vector<int>& ids) {
   const auto isRetired = [&](const KeyframeView& view) {
     return std::binary_search(ids.begin(), ids.end(), static_cast<int>(view.id));

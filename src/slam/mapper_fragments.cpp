@@ -8,10 +8,10 @@
 namespace pf {
 namespace {
 
-// However long nothing came: it is frames that say that the camera does not know the place.
+// A gap counts for no more than this: only frames show that the place is unknown.
 constexpr double kMostElapsed_s = 0.5;
-// Where people or a hand leave less of the view than this, the camera is covered: the place is not
-// one that nobody knows, and a piece of map would be made of scraps.
+// Where people or a hand leave less of the view than this, the camera is covered: the place need
+// not be unknown, and a fragment would be made of scraps.
 constexpr double kOpenView = 0.25;
 constexpr double kToPlace_s = 0.5;  // between two questions where the fragment lies
 // Two answers in a row that place the fragment alike are believed.

@@ -41,12 +41,12 @@ void Mapper::State::keep(const StaticFrame& input, const Location& location) {
     tellCloser();
     if (!question->corrected.empty()) question->corrected.pop_back();  // it is new itself
   }
-  const bool nobody = input.mask.empty() || cv::countNonZero(input.mask) == 0;
-  views.push_back(keyframeView(frame, id, location.pose(), nobody));
+  const bool no_people = input.mask.empty() || cv::countNonZero(input.mask) == 0;
+  views.push_back(keyframeView(frame, id, location.pose(), no_people));
   if (!config.loop.enabled) return;
   question->keyframe = views.back();
-  // As long as depth is off by a field that is not known well, two pictures tell a turn worse than
-  // the map, which is the mean of many.
+  // As long as depth is off by a field that is not known well, two pictures measure a turn worse
+  // than the map, which is the mean of many.
   if (is_calibration_loaded) question->step = back_end.stepTo(id);
 }
 
@@ -135,7 +135,7 @@ bool Mapper::isLookedFor() const {
 
 void Mapper::introduceCloser() {
   state_->closer_is_old = !state_->views.empty();
-  state_->place_is_asked = false;  // of somebody who does not answer any more
+  state_->place_is_asked = false;  // of a closer that does not answer any more
 }
 
 void Mapper::restartClock() {

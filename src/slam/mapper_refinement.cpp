@@ -35,7 +35,7 @@ void Mapper::State::alignPairs(Refinement& done) {
   settle();
 }
 
-/// Takes in what all keyframes together tell of the depth camera. Returns why pairs of pictures
+/// Takes in what all keyframes together reveal of the depth camera. Returns why pairs of pictures
 /// would not better the map; empty: they would.
 std::string Mapper::State::learnFromAll() {
   if (calibration && !config.calibration.learns()) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the robot's other sensors tell.
+// Measurements of the robot's other sensors.
 #include "mapper_state.hpp"
 #include "posefusion/core/stamps.hpp"
 
@@ -30,7 +30,7 @@ Eigen::Isometry3d Mapper::worldFromMap() const {
   return state_->worldFromMap().value_or(bodyFromOptical());
 }
 
-/// As it was told, or as gravity has it; nothing where neither is known.
+/// As set by place(), or from gravity; nothing where neither is known.
 std::optional<Eigen::Isometry3d> Mapper::State::worldFromMap() const {
   if (T_world_map) return T_world_map;
   const auto up = gravity.up();

@@ -108,7 +108,7 @@ struct Mapper::State {
   std::optional<double> lost_s;          ///< while lost: with an open view
   int frames_to_place = 0;               ///< until the next question where the fragment is
   RelativePose at_question;              ///< of the frame that was asked about
-  std::optional<FragmentPlace> seen_at;  ///< told once, not yet twice
+  std::optional<FragmentPlace> seen_at;  ///< reported once, not yet twice
 
   /// That the camera is in or, while lost, was in.
   int fragment() const { return localiser.lastPose().fragment; }

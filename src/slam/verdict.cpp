@@ -15,7 +15,7 @@ constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
 // A converged alignment may still be a step of this from its end.
 constexpr double kUnfinished_m = 0.004, kUnfinished_rad = 0.004;
 // Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
-// follow a person who was not masked. Not so for a step that no robot makes between two frames.
+// follow an unmasked person. Not so for a step that no robot makes between two frames.
 constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
 constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
 // Part of the model's points that a frame may see through: things are moved, people were fused.

@@ -10,8 +10,8 @@
 namespace pf {
 namespace {
 
-// The surer it is that a surfel stands still, the more it counts: it may belong to a person who was
-// not masked. It never counts for nothing: a turn shows little but new surfels.
+// The surer it is that a surfel stands still, the more it counts: it may belong to an unmasked
+// person. Its weight is never 0: a turn shows little but new surfels.
 constexpr float kLeastWeight = 0.2F;
 
 float weightOf(float odds) {

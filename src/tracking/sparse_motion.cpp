@@ -17,9 +17,8 @@ constexpr double kMinInlierShare = 0.35;
 constexpr int kRansacIterations = 100;
 constexpr double kRansacConfidence = 0.995;
 constexpr double kRansacError = 2.5;  // cornerPixel()
-// Corners without depth tell of the turn, and of the direction of the shift, and are used only
-// where there are few others. Beside a surface nearer than this (m) they may be too near for the
-// sensor.
+// Corners without depth measure the turn and the direction of the shift, and are used only where
+// there are few others. Beside a surface nearer than this (m) they may be too near for the sensor.
 constexpr double kOpen_m = 1.5;
 constexpr int kEnoughNear = 30;
 // Landmarks that were placed by poses gone astray agree less than this: the step from the frame

@@ -10,7 +10,7 @@ namespace pf {
 class Surroundings {
  public:
   /// `depth_m`: CV_32FC1, 0 = none, people removed; may be empty. `still`: any size, CV_8UC1, 0 = a
-  /// person's pixel; empty: nobody.
+  /// person's pixel; empty: no people.
   Surroundings(const cv::Mat& depth_m, const cv::Mat& still);
 
   /// Depth (m) of the next thing to be seen beside a pixel; 0 of a person, outside, and where

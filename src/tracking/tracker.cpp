@@ -36,7 +36,7 @@ constexpr double kNormalNoise = 14.0;
 constexpr double kBlindNormalNoise = 7.0;
 constexpr double kMaxNormalNoise_rad = 0.12;
 // A prior that the images contradict by so much (squared, in standard deviations of both) keeps a
-// quarter of its weight: corners may follow a person who was not masked.
+// quarter of its weight: corners may follow an unmasked person.
 constexpr double kPriorScale2 = 100.0;
 constexpr double kMinLeverArm_m = 0.3;
 // A prior follows from frames that saw the same places with the same errors: against those, one

@@ -10,19 +10,19 @@ namespace pf {
 /// is no surface". Views raise and lower it by what they say; 0 is not known. After the clamped
 /// log-odds of occupancy mapping (Moravec and Elfes 1985; OctoMap, Hornung et al. 2013).
 ///
-/// Views of one second are partly the same: what a frame says counts for the time that it stands
-/// for (`frames`: at 30 Hz, see Pace::worth()), so that a second is worth the same at any rate.
+/// Views of one second are partly the same: a frame counts for the time that it represents
+/// (`frames`: at 30 Hz, see Pace::worth()), so that a second is worth the same at any rate.
 namespace static_odds {
 
-/// What a frame at 30 Hz says for or against: a second of them makes 1 : 80 of 1 : 1.
+/// Evidence of a frame at 30 Hz, for or against: a second of them makes 1 : 80 of 1 : 1.
 constexpr float kFrame = 4.4F / 30.0F;
 
 /// However often a thing was seen, it may be moved: 0.8 s of views that see through it are enough
 /// to make it unlikely, 1 s to remove it.
 constexpr float kMost = 24.0F * kFrame;
 
-/// What stands before a surface that is known came there, as somebody whom the detector misses
-/// would: it takes a second longer until it is taken for part of the room.
+/// What lies in front of a known surface has come there, perhaps a person that the detector misses:
+/// it takes a second longer to count as part of the room.
 constexpr float kNewcomer = -30.0F * kFrame;
 
 /// Contradicted to below this (0.29) it is no longer kept: what remains may be mapped anew.

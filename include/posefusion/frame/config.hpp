@@ -22,7 +22,7 @@ inline void visitFields(FrameConfig& c, FieldVisitor& v) {
       "angle that one of a Kinect's has at 320x240");
 }
 
-/// The factor for a camera of this focal length (pixels): `shrink`, or what 0 stands for.
+/// The factor for a camera of this focal length (pixels): `shrink`, or computed where it is 0.
 int shrinkFor(const FrameConfig& config, double focal_px);
 
 }  // namespace pf

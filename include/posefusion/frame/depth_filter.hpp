@@ -11,8 +11,8 @@ namespace pf {
 /// Depth images here are CV_32FC1 in metres, 0 = invalid. Every function writes into its last
 /// arguments, reusing their memory, and gives the same bits for any number of threads. Means are
 /// taken of the inverse depth: planes are linear in it, so that leaning surfaces are not moved, and
-/// the noise of structured light and stereo is even in it. What lies on one surface is told by the
-/// noise of the sensor.
+/// the noise of structured light and stereo is even in it. The noise of the sensor decides what
+/// lies on one surface.
 
 /// Each block of factor x factor pixels becomes the mean of those of its valid pixels that lie on
 /// the nearest surface in it: silhouettes are kept, noise falls.

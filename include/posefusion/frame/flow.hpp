@@ -36,8 +36,8 @@ struct FollowedPoints {
 };
 
 /// Sparse optical flow between successive frames (pyramidal Lucas and Kanade; Bouguet 2001) on
-/// small grey images: of corners (Shi and Tomasi 1994), which tell how the camera moved, and of
-/// any other points, which tell how people did. The images are prepared once for both; slow changes
+/// small grey images: of corners (Shi and Tomasi 1994), which give the motion of the camera, and of
+/// any other points, which give that of people. The images are prepared once for both; slow changes
 /// of brightness are taken out of them. Not thread safe.
 class FlowTracker {
  public:

@@ -20,7 +20,7 @@ struct ModelView {
   /// Corrections move the map, and the camera with it. From coordinates in which they move neither,
   /// to the map's: only the camera's own motion is in T_uncorrected_camera().
   Eigen::Isometry3d T_map_uncorrected = Eigen::Isometry3d::Identity();
-  /// From the map's coordinates to the frame of those who use it, as far as known.
+  /// From the map's coordinates to the user's frame, as far as known.
   std::optional<Eigen::Isometry3d> T_world_map{};
   cv::Mat depth_m;    ///< CV_32FC1, along the optical axis, 0 = nothing
   cv::Mat normal_x;   ///< CV_32FC1, camera frame, unit length, towards the camera

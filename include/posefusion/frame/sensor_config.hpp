@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// The kind that stands for "what the recording says, else structured light".
+/// The kind that means "what the recording says, else structured light".
 constexpr const char* kAnySensor = "auto";
 
 /// Settings of the depth camera: which kind it is and, where more is known of it, its own numbers.

@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// Which loops between two pieces of the map tell the same of how the pieces lie to each other.
+/// Which loops between two pieces of the map agree on the relative pose of the pieces.
 struct Consensus {
   /// The most that agree with each other; first the one that most agree with.
   std::vector<PoseConstraint> agreeing;

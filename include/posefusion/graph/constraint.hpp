@@ -12,8 +12,8 @@ enum class ConstraintKind {
   reckoned  ///< where dead reckoning puts a fragment whose place is not known
 };
 
-/// What is measured of two keyframes: T_from_to times a small motion, whose twist is normally
-/// distributed.
+/// A measured relative pose of two keyframes: T_from_to times a small motion, whose twist is
+/// normally distributed.
 struct PoseConstraint {
   int from = -1, to = -1;  ///< keyframes
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();

@@ -77,7 +77,7 @@ class LoopCloser {
   /// still agree.
   std::vector<PoseConstraint> remeasure(const std::vector<PoseConstraint>& constraints) const;
 
-  /// Of the keyframes, in the map as last told.
+  /// Of the keyframes, as last set.
   std::vector<MapPose> poses() const;
 
   const LoopCounts& counts() const { return counts_; }

@@ -28,7 +28,7 @@ inline void visitFields(LoopConfig& c, FieldVisitor& v) {
   v.number("fern_novelty", c.fern_novelty, 0.0, 1.0,
            "a keyframe's ferns are stored when it differs from all others by more than this");
   v.flag("static_view_rule", c.static_view_rule,
-         "ferns are stored only while nobody is in view (off in the modes elastic and posefusion)");
+         "ferns are stored only without people in view (off in the modes elastic and posefusion)");
   v.integer("min_gap_keyframes", c.min_gap_keyframes, 1, 100000,
             "a loop leads back over at least so many keyframes");
   v.number("near_m", c.near_m, 0.0, 1000.0, "keyframes nearer than this are compared");

@@ -19,7 +19,7 @@ struct FeatureImage {
   PinholeCamera camera;
 };
 
-/// Points that can be told again, with their places.
+/// Points that can be recognised again, with their places.
 struct Features {
   static constexpr int kDescriptor = 128;
 
@@ -48,7 +48,7 @@ FeatureMatch matchFeatures(const Features& first, const Features& second,
                            const DepthSensor& sensor);
 
 std::string toBytes(const Features& features);
-/// Throws InputError telling what is wrong with the bytes.
+/// Throws InputError saying what is wrong with the bytes.
 Features featuresFromBytes(const std::string& bytes);
 
 }  // namespace pf

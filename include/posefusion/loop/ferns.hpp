@@ -75,7 +75,7 @@ class FernDatabase {
 
   /// All of it, of the same bytes on every machine.
   std::string toBytes() const;
-  /// Throws InputError telling what is wrong with the bytes.
+  /// Throws InputError saying what is wrong with the bytes.
   static FernDatabase fromBytes(const std::string& bytes);
 
  private:

@@ -39,7 +39,7 @@ struct KeyframePicture {
 
 /// Depth, normals and grey levels of a model view as seen from another pose (in the frame of the
 /// view's camera), as far as its pixels reach. Reuses the memory of `moved`; where its depth is 0
-/// the other planes tell nothing.
+/// the other planes are undefined.
 void seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera, ModelView& moved);
 
 /// Aligns keyframes with each other and judges as PlaceVerifier does. Keeps buffers between calls;

@@ -103,7 +103,7 @@ class PlaceVerifier {
 
   /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best.
   /// When they lead to different poses, or fragments, the one that dead reckoning expects, where it
-  /// is given and tells them apart; else `ambiguous`. Of none believed the verdict on the first.
+  /// is given and separates them; else `ambiguous`. Of none believed the verdict on the first.
   PlaceVerdict verifyBest(const SurfelMap& map, const WorkingFrame& frame,
                           const std::vector<PlaceCandidate>& candidates, std::size_t most = 6,
                           const ExpectedPlace* expected = nullptr);

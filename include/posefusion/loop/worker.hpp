@@ -40,7 +40,7 @@ struct LoopQuestion {
   /// The keyframes of a map just loaded, as far as their images are known: what was before is
   /// forgotten.
   std::optional<std::vector<KeyframeView>> known;
-  /// Keyframes that others stand for: their pictures are forgotten.
+  /// Keyframes that others now represent: their pictures are forgotten.
   std::vector<int> retired{};
   /// Of all keyframes before this one, in their order, when a correction has moved them; else
   /// empty.
@@ -48,7 +48,7 @@ struct LoopQuestion {
   std::shared_ptr<const PlaceQuestion> place;
   /// Set by the asking thread once the camera is located again: relocalisation is then skipped.
   std::shared_ptr<const std::atomic<bool>> place_is_void{};
-  /// Of the keyframe; else it is only told.
+  /// Whether to search loops of the keyframe; else it is only added.
   bool seeks_loops = true;
   /// How often the depth of the keyframes has been corrected by what was learned.
   int depth_version = 0;
@@ -73,7 +73,7 @@ struct LoopQuestion {
 struct LoopAnswer {
   std::vector<LoopConstraint> loops;   ///< of the keyframe
   std::optional<PoseConstraint> step;  ///< of the question, as its pictures have it
-  /// What it took to find and verify them all; 0 where there was no keyframe, or nobody measured.
+  /// Time to find and verify them all; 0 without a keyframe, or where it was not measured.
   double verification_ms = 0;
   bool asked_for_place = false;
   std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
@@ -122,7 +122,7 @@ class LoopWorker {
   LoopCloser closer_;
   FieldLearner learner_;
   PlaceVerifier verifier_;
-  LoopCounts counts_;  ///< of lost cameras; of pairs, before the keyframes were told anew
+  LoopCounts counts_;  ///< of lost cameras; of pairs, before the keyframes were sent anew
   // Of the map that was last searched in.
   std::weak_ptr<const SurfelMap> map_;  ///< that those fragments are of
   std::map<int, Searched> searched_;

@@ -22,8 +22,8 @@ struct FusionOptions {
   /// people less than 1.5 s ago, and is not seen in this frame, may be what was mapped of them
   /// before they were found: that counts as two frames that contradict it.
   cv::Mat mask;
-  /// Like `mask`: a person whom the map has. A surfel seen there at the depth of `input_depth_m`
-  /// was fused from a person by mistake: that contradicts it.
+  /// Like `mask`: a person that is part of the map. A surfel seen there at the depth of
+  /// `input_depth_m` was fused from a person by mistake: that contradicts it.
   cv::Mat in_map_mask;
   /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out.
   cv::Mat input_depth_m;
@@ -47,7 +47,7 @@ struct FusionCounts {
 /// back, it moves along the pixel's ray by the running weighted mean (weights 1 / variance of the
 /// sensor) and its odds rise; if the frame sees well behind it, they fall. Pixels that no surfel
 /// explains become new surfels. Refuted, or unstable and not supported for long: removed. So a
-/// person who was fused by mistake goes away once the room behind is seen.
+/// person fused by mistake disappears once the room behind is seen.
 class Fuser {
  public:
   Fuser();

@@ -65,7 +65,7 @@ class SharedBlocks {
   SurfelBlock& change(std::size_t i) {
     std::shared_ptr<SurfelBlock>& block = blocks_[i];
     if (block.use_count() > 1) block = copyOf(*block);
-    // Who let go of the block last, in another thread, has read it before.
+    // The last other owner, in another thread, has finished reading the block.
     std::atomic_thread_fence(std::memory_order_acquire);
     return *block;
   }

@@ -76,7 +76,7 @@ struct Person {
 /// covers 2x2 cells of depthInputGrid() for the frame's size.
 struct PersonMask {
   cv::Mat probability;  ///< CV_8UC1, 255 = surely a person
-  cv::Mat owner;  ///< CV_8UC1, same size: 1 + index of the person in People::people, 0: nobody
+  cv::Mat owner;  ///< CV_8UC1, same size: 1 + index of the person in People::people, 0: no person
 
   bool empty() const { return probability.empty(); }
 };

@@ -60,11 +60,10 @@ struct Location {
   MapPose pose() const { return {fragment, T_map_camera}; }
 };
 
-/// Finds each frame in the map: a prior from the corners' motion and what the robot's other sensors
-/// tell (or constant velocity where neither knows), alignment from it and, where that fails, from
-/// other starts, and a verdict. Carries the pose by dead reckoning while alignment fails. Coming
-/// back after a loss takes proof over several frames. Works in one fragment of the map at a time.
-/// Not thread safe.
+/// Finds each frame in the map: a prior from the corners' motion and the robot's other sensors (or
+/// constant velocity without both), alignment from it and, where that fails, from other starts, and
+/// a verdict. Carries the pose by dead reckoning while alignment fails. Coming back after a loss
+/// takes proof over several frames. Works in one fragment of the map at a time. Not thread safe.
 class Localiser {
  public:
   explicit Localiser(const TrackingConfig& config);
@@ -79,7 +78,7 @@ class Localiser {
 
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
   /// the last fused frame; `render` draws fragment(). A `forced` frame (see BlurScore) is not
-  /// believed enough to be fused. `told`: the motion since lastStamp() by the robot's other
+  /// trusted enough to be fused. `told`: the motion since lastStamp() measured by the robot's other
   /// sensors.
   Location locate(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                   bool forced, const ModelView& view, const MapRenderers& render,
@@ -98,8 +97,8 @@ class Localiser {
   /// one.
   int fragment() const { return previous_.fragment; }
 
-  /// The pose by the corners' motion alone since the beginning: what happens between two frames can
-  /// be told from it even while the camera is lost.
+  /// The pose by the corners' motion alone since the beginning: it gives the motion between two
+  /// frames even while the camera is lost.
   const Eigen::Isometry3d& reckonedPose() const { return T_reckoned_; }
 
   /// Follows a correction of the map, which moves lastPose() by `T_new_old` and into `fragment`. A
@@ -140,7 +139,7 @@ class Localiser {
     bool forced = false;  ///< the frame is blurred
   };
 
-  /// Tells `location` of the motion since the frame before; the prediction that follows.
+  /// Writes the motion since the frame before to `location`; returns the prediction that follows.
   PosePrior expect(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                    const ModelView& view, const std::optional<MotionPrior>& told,
                    Location& location);
@@ -153,10 +152,9 @@ class Localiser {
   bool isReckonedWell(const Location& location, const PosePrior& prior, double reckoned_s) const;
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
-  /// What else is asked of a frame that tracking found good. Where little is in view its position
-  /// has to be known as well as at a searched place; after a gap, and where no corner tells of a
-  /// step, it has to pass all that a searched place must pass: one plane (a ceiling, in a fall)
-  /// slides as it likes.
+  /// Further checks of a frame that tracking found good. Where little is in view its position must
+  /// be known as well as at a searched place; after a gap, and where no corner measures a step, it
+  /// must pass all checks of a searched place: one plane (a ceiling, in a fall) slides as it likes.
   Verdict askFurther(const WorkingFrame& frame, const Location& location, const PosePrior& prior,
                      const Moment& moment, const ViewRenderer& render) const;
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,

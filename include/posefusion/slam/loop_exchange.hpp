@@ -19,13 +19,13 @@ class Mapper;
 
 /// When answers are taken.
 enum class AnswerTime {
-  after_lag,  ///< so long after the question, counted in frames, waited for: the same on every
-              ///< machine
-  when_ready  ///< live: nobody waits
+  after_lag,  ///< a fixed number of frames after the question, waiting if need be: the same on
+              ///< every machine
+  when_ready  ///< live: without waiting
 };
 
-/// Answers questions beside the mapper: in a thread, or in another nodelet. In their order, but for
-/// urgent ones, which may come sooner. The owner's thread alone may call it.
+/// Answers questions beside the mapper, in a thread or in another nodelet: in their order, except
+/// that urgent ones may be answered sooner. The owner's thread alone may call it.
 class LoopResponder {
  public:
   virtual ~LoopResponder() = default;
@@ -43,7 +43,7 @@ class LoopResponder {
   /// Forgets all questions that were not taken yet.
   virtual void forget() = 0;
 
-  /// Whether, since the last call, somebody else has begun to answer, who knows no keyframes.
+  /// Whether, since the last call, another loop closer has taken over, which knows no keyframes.
   virtual bool isReplaced() { return false; }
 };
 

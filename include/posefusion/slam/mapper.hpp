@@ -45,8 +45,8 @@ class Mapper {
 
   FrameStatus process(const StaticFrame& input);
 
-  /// What the robot's other sensors tell, in the order of their stamps and before the frames that
-  /// it helps: the camera's pose in the frame of the odometry, and inertial samples along the
+  /// Measurements of the robot's other sensors, in the order of their stamps and before the frames
+  /// that it helps: the camera's pose in the frame of the odometry, and inertial samples along the
   /// camera's axes. See RobotMotion for when it is believed. @{
   void addOdometry(const StampedPose& pose);
   void addImu(const ImuSample& sample);
@@ -61,7 +61,7 @@ class Mapper {
   /// known.
   bool isLookedFor() const;
 
-  /// Somebody else answers from now on: the next question tells of all keyframes.
+  /// Another loop closer answers from now on: the next question holds all keyframes.
   void introduceCloser();
 
   /// Takes in an answer: a loop corrects the map and all poses, see takeCorrection(); a place found
@@ -110,7 +110,7 @@ class Mapper {
     std::string text() const;  ///< what was done, or why nothing, in a line
   };
 
-  /// The best that the pictures of the keyframes allow: what they tell all together of the depth
+  /// The best that the pictures of the keyframes allow: what they all together reveal of the depth
   /// camera is taken in (where mapping learns), then all that see the same surface are aligned with
   /// each other, and the graph, the map and all poses follow. Seconds of work for a hundred
   /// keyframes: for when no frame waits. Nothing is aligned where depth is off by what is not
@@ -159,22 +159,22 @@ class Mapper {
   /// Of the frames, as of the last one.
   const Pace& pace() const;
 
-  /// Tells where the map stands in the frame of those who use it (z up). Nothing in the map
-  /// changes; its files, and later sessions in it, keep that frame.
+  /// Sets the pose of the map in the user's frame (z up). Nothing in the map changes; its files,
+  /// and later sessions in it, keep that frame.
   void place(const Eigen::Isometry3d& T_world_map);
 
   /// Nothing until place() was called for this map, here or in a session before.
   const std::optional<Eigen::Isometry3d>& placed() const;
 
-  /// The same for files; not placed, gravity tells what is level or, unknown, the first camera.
+  /// The same for files; without place(), gravity (else the first camera) defines what is level.
   Eigen::Isometry3d worldFromMap() const;
 
   /// From the next frame on. The loop closer keeps what it began with.
   void set(const TrackingConfig& tracking);
 
-  /// Puts known surfels (map frame) into the map, as far as its memory lasts; tells how many. They
-  /// count like fused ones, but do not tell where the camera is: before the first frame the map
-  /// still starts at its pose.
+  /// Puts known surfels (map frame) into the map, as far as its memory lasts; returns how many.
+  /// They count like fused ones, but do not locate the camera: before the first frame the map still
+  /// starts at its pose.
   std::size_t add(const SurfelArrays& surfels);
 
   /// Forgets everything; the next frame starts a new map at `T_map_camera` (identity at first).

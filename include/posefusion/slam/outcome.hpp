@@ -23,7 +23,7 @@ enum class FrameOutcome {
   few_inliers,    ///< too little of the frame agrees with the model
   degenerate,     ///< the images leave directions free, and no corners help
   jumped,         ///< the motion is too large to be true
-  disagrees,      ///< alignment and corners tell of different motions
+  disagrees,      ///< alignment and corners measure different motions
   seen_through,   ///< the frame sees through too much of the model
   unproven,       ///< after a loss: looks right, but not for long enough
   forced,         ///< passed the blur gate only because too many were dropped before it

@@ -62,10 +62,10 @@ class Pipeline {
   /// Before load() and the first frame; see Mapper::calibrate().
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
-  /// Before the first frame: what the robot's other sensors told meanwhile.
+  /// Before the first frame: the measurements of the robot's other sensors during the recording.
   void accompany(RobotRecording recording) { robot_ = RobotPlayback(std::move(recording)); }
 
-  /// Between two frames: takes in loops that somebody else has found; see Mapper::take().
+  /// Between two frames: takes in loops found elsewhere; see Mapper::take().
   void take(const LoopAnswer& answer) { mapper_.take(answer); }
 
   /// After the last frame: takes in what the loop closer still has to say, and refines the map

@@ -20,13 +20,14 @@ struct ProvisionalPose {
 /// trolley), both of which grow with the time. Not thread safe.
 class Reckoning {
  public:
-  /// The camera is there.
+  /// The camera is at this known pose.
   void know(const Eigen::Isometry3d& T_map_camera, const Matrix6d& covariance);
 
-  /// It has moved on, in so long. `covariance`: of the step's twist, in the camera frame after it.
+  /// The camera has moved in `elapsed_s`. `covariance`: of the step's twist, in the camera frame
+  /// after it.
   void move(const Eigen::Isometry3d& T_before_after, const Matrix6d& covariance, double elapsed_s);
 
-  /// Nothing tells how it has moved in so long.
+  /// For `elapsed_s` nothing has measured the motion.
   void pass(double elapsed_s);
 
   /// The map has been corrected: what was at a pose T is now at T_new_old * T.
@@ -42,7 +43,7 @@ class Reckoning {
   Eigen::Isometry3d T_map_camera_ = Eigen::Isometry3d::Identity();
   Matrix6d steps_ = Matrix6d::Zero();  ///< covariance of the single steps, and of past gaps
   double way_m_ = 0, turn_rad_ = 0;    ///< since it was known
-  double blind_s_ = 0;                 ///< since anything told of the motion
+  double blind_s_ = 0;                 ///< since the motion was last measured
   double elapsed_s_ = 0;               ///< since it was known
 };
 

@@ -35,7 +35,7 @@ class ModelPyramid {
  public:
   /// `fill`: finest level of the frame that was fused at the view's pose; it stands in, with little
   /// weight, where the view shows nothing or something well behind. Null where there is none.
-  /// Reuses memory. `sensor`: by whose noise depths are told to be of one surface.
+  /// Reuses memory. `sensor`: its noise decides which depths belong to one surface.
   void assign(const ModelView& view, const DepthSensor& sensor, const FrameLevel* fill = nullptr);
   const ModelPoints& level(int i) const { return levels_[i]; }
 

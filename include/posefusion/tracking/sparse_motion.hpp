@@ -29,19 +29,19 @@ struct FlowScene {
   const ModelView* view;    ///< the map from the earlier frame's pose; null where there is none
   const Landmarks* landmarks = nullptr;  ///< corners whose place in the map is known; may be null
   Eigen::Isometry3d T_map_before = Eigen::Isometry3d::Identity();  ///< pose of the earlier frame
-  /// The earlier frame, any size: CV_8UC1, 0 = a person's pixel. Empty: nobody is in view.
+  /// The earlier frame, any size: CV_8UC1, 0 = a person's pixel. Empty: no person is in view.
   cv::Mat before_still{};
   DepthSensor sensor{};
 };
 
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
-/// of the map: people who were not masked; nor, without depth of their own, next to people or to
-/// something near: who stands too close for the sensor is not beyond its range): P3P with RANSAC
-/// (Fischler and Bolles 1981; fixed seed), then least squares over reprojection and inverse depth
-/// with Cauchy's weights. Known landmarks stand where the map has them, so that the motion does not
-/// drift from frame to frame; where they do not agree, it is measured from the earlier frame alone.
-/// The camera is that of the full image, without distortion. Not found with fewer than a dozen
-/// corners or when too few of them agree.
+/// of the map: unmasked people; nor, without depth of their own, next to people or to something
+/// near: a person too close for the sensor is not beyond its range): P3P with RANSAC (Fischler and
+/// Bolles 1981; fixed seed), then least squares over reprojection and inverse depth with Cauchy's
+/// weights. Known landmarks stand where the map has them, so that the motion does not drift from
+/// frame to frame; where they do not agree, it is measured from the earlier frame alone. The camera
+/// is that of the full image, without distortion. Not found with fewer than a dozen corners or when
+/// too few of them agree.
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera);
 
