@@ -25,8 +25,9 @@ namespace posefusion_ros {
 constexpr int kInternalQueue = 100;
 
 /// What the nodelets of the chain have in common: no exception leaves them, a frame that is given
-/// up is told to fusion (which reports one status for every frame), parameters are reported at the
-/// start, and /diagnostics tells every `~diagnostic_period` seconds (wall) how the stage is.
+/// up is reported to fusion (which publishes one status for every frame), parameters are logged at
+/// the start, and /diagnostics reports the state of the stage every `~diagnostic_period` seconds
+/// (wall).
 class ChainNodelet : public nodelet::Nodelet {
  public:
   ~ChainNodelet() override { diagnostics_timer_.stop(); }
@@ -49,10 +50,10 @@ class ChainNodelet : public nodelet::Nodelet {
   /// as given up, by whichever stage. From the first call on reject() does not count.
   void noteOutcome(const ros::Time& stamp, std::uint8_t outcome);
 
-  /// For what the stage itself has to tell.
+  /// For what the stage itself reports.
   StageWatch& watch() { return watch_; }
 
-  /// Logs the parameters that are not the defaults, and warns of those that nobody knows.
+  /// Logs the parameters that are not the defaults, and warns of unknown ones.
   void report(const Parameters& parameters);
 
   /// Logs them.

@@ -19,8 +19,8 @@ class GrowingPause {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Whether it is to be said now. `what` tells one case from another: another one is said at once.
-  /// Empty: there is nothing to say, and what comes next is new.
+  /// Whether to log it now. `what` names the case: a different one is logged at once. Empty:
+  /// nothing to log, and the next case is new.
   bool isDue(Time now, const std::string& what);
 
  private:

@@ -36,7 +36,7 @@ class CloserLink : public pf::LoopResponder {
   /// Whether a closer is connected. Thread safe.
   bool isThere() const { return answer_subscriber_.getNumPublishers() > 0; }
 
-  /// From now on, until hurry(false), nothing is waited for; who was waited for counts as stalled.
+  /// From now on, until hurry(false), nothing is waited for; a closer waited for counts as stalled.
   /// Thread safe.
   void hurry(bool hurries) { hurries_ = hurries; }
 
@@ -48,7 +48,7 @@ class CloserLink : public pf::LoopResponder {
   struct Asked {
     Clock::time_point when;
     bool is_urgent = false;  // answered out of turn
-    bool is_lost = false;    // who was asked is gone
+    bool is_lost = false;    // the closer that was asked is gone
   };
   using Question = std::map<std::uint64_t, Asked>::const_iterator;
 
@@ -67,7 +67,7 @@ class CloserLink : public pf::LoopResponder {
   std::uint64_t number_ = 0;
   std::map<std::uint64_t, Asked> asked_;                          // by number
   std::map<std::uint64_t, LoopAnswerMessage::ConstPtr> answers_;  // by number, of those asked
-  std::uint64_t closer_ = 0;  // who answered last; 0: nobody yet
+  std::uint64_t closer_ = 0;                                      // that answered last; 0: none yet
   bool was_there_ = true, is_replaced_ = false, is_stalled_ = false;
   std::atomic<bool> hurries_{false};
   std::string complaint_;

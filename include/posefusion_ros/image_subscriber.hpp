@@ -31,7 +31,7 @@ class ImageSubscriber {
   std::string type() const;
   bool hasPublisher() const { return subscriber_.getNumPublishers() > 0; }
 
-  /// For the message that nobody publishes it: the package that the sender needs; empty for raw.
+  /// For the message that it has no publisher: the package that the publisher needs; empty for raw.
   std::string advice() const;
 
  private:

@@ -55,7 +55,7 @@ class InputPairing {
   void addInfo(const sensor_msgs::CameraInfoConstPtr& info);
   void addDepthInfo(const sensor_msgs::CameraInfoConstPtr& info);
 
-  /// What has arrived so far, for the message that tells what is missing.
+  /// What has arrived so far, for the message that says what is missing.
   std::string describeArrivals(const std::array<std::string, 3>& topics) const;
 
  private:
@@ -72,7 +72,7 @@ class InputPairing {
   void restart();
   template <int stream>
   void pair(const InputImage& image);
-  /// Whether an image of this stamp may go on; `reason` tells why not.
+  /// Whether an image of this stamp may go on; `reason` says why not.
   bool admit(Stream stream, const ros::Time& stamp, std::string& reason);
   void onPair(const Pointer& color, const Pointer& depth);
   void handOver(const InputImage& color, const InputImage& depth);

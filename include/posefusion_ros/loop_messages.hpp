@@ -20,7 +20,7 @@ struct LoopQuestionMessage {
   using Wire = KeyframeMsg;
   using ConstPtr = boost::shared_ptr<const LoopQuestionMessage>;
   std_msgs::Header header;
-  std::uint64_t session = 0;  ///< of who asks
+  std::uint64_t session = 0;  ///< of the asking nodelet
   std::uint64_t number = 0;
   pf::LoopQuestion question;
 };
@@ -31,7 +31,7 @@ struct LoopAnswerMessage {
   using ConstPtr = boost::shared_ptr<const LoopAnswerMessage>;
   std_msgs::Header header;
   std::uint64_t session = 0, number = 0;  ///< of the question
-  std::uint64_t closer = 0;               ///< who answers
+  std::uint64_t closer = 0;               ///< the answering loop closer
   std::uint8_t wanted = 0;                ///< as in the wire's message
   std::uint32_t keyframe = 0;             ///< of the question
   std::string error;                      ///< empty, or there is no answer
@@ -44,7 +44,7 @@ std::uint8_t wantedBy(const pf::LoopQuestion& question);
 KeyframeMsg toWire(const LoopQuestionMessage& message);
 LoopConstraintMsg toWire(const LoopAnswerMessage& message);
 
-/// Tells a nodelet from all others that there were in this process. Thread safe.
+/// A number unique to a nodelet among all there were in this process. Thread safe.
 std::uint64_t newIdentity();
 
 /// Throws ros::Exception: such a message came from another process.

@@ -13,12 +13,12 @@
 
 namespace posefusion_ros {
 
-/// Publishes what the map holds: the surfels for people to look at (throttled, only while someone
-/// listens; at once to someone new) and, after each frame, the view that the segmenter needs.
+/// Publishes what the map holds: the surfels for display (throttled, only with subscribers; at once
+/// to a new subscriber) and, after each frame, the view that the segmenter needs.
 class MapOutput {
  public:
-  /// `newcomer` is called, in the queue of `handle`, when someone begins to listen to the surfels:
-  /// publishSurfels() gives them the map even where no frame comes any more.
+  /// `newcomer` is called, in the queue of `handle`, when a node subscribes to the surfels:
+  /// publishSurfels() sends it the map even where no frame comes any more.
   MapOutput(ros::NodeHandle& handle, const PublishingConfig& config, const std::string& map_frame,
             const std::function<void()>& newcomer);
 

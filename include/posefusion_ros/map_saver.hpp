@@ -56,7 +56,7 @@ class MapSaver {
   void continueIn(const std::string& file, const MapToSave& map);
 
   /// On request: writes the map as it is now into a new folder, `<date>_<time>_saved`, which is
-  /// there whole or not at all. Returns a sentence that tells what was written where. Throws
+  /// there whole or not at all. Returns a sentence that says what was written where. Throws
   /// InputError when there is nothing to save, or naming what cannot be written.
   std::string save(const MapToSave& map);
 

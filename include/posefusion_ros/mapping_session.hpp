@@ -71,7 +71,7 @@ class MappingSession {
   pf::MapUse use() const { return use_; }
   bool isLoaded() const { return !map_file_.empty(); }  ///< the map began in a file
 
-  /// What depth is corrected by: "learned", or the file that told it; empty: nothing.
+  /// What depth is corrected by: "learned", or the file of the correction; empty: nothing.
   std::string correctedBy() const { return mapper_->calibration() ? corrected_by_ : ""; }
 
   /// What was found out about the depth camera since the last call.
@@ -83,7 +83,7 @@ class MappingSession {
   CalibrationProgress calibrationProgress() const;
   /// @}
 
-  /// Each returns a sentence that tells what was done, and throws InputError where it changes
+  /// Each returns a sentence that says what was done, and throws InputError where it changes
   /// nothing. @{
   std::string save() { return saver_.save(toSave()); }
   std::string reset();  ///< saves, and begins an empty map
@@ -117,7 +117,7 @@ class MappingSession {
   pf::Config config_;
   bool is_lossless_;
   CalibrationStore store_;
-  bool is_camera_named_ = false;  // the store knows whose calibrations it keeps
+  bool is_camera_named_ = false;  // the store knows the camera of its calibrations
   bool is_unkept_ = false;        // something was learned that could not be written
   bool is_continued_ = false;     // the map file that was begun in is written on
   std::string corrected_by_;      // see correctedBy()

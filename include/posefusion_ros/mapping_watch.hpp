@@ -8,7 +8,7 @@
 
 namespace posefusion_ros {
 
-/// What /diagnostics tells of tracking, map and loops: state and, while lost, since when (by the
+/// What /diagnostics reports of tracking, map and loops: state and, while lost, since when (by the
 /// stamps); surfels and their memory; keyframes, loops and places; what depth is corrected by.
 /// DOUBTFUL is WARN, LOST is ERROR.
 class MappingWatch {

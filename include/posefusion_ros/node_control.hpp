@@ -19,7 +19,7 @@ void endNodes(const std::vector<std::string>& names, double patience_s);
 /// ended, or this one is to end.
 void outwait(const std::string& name, double patience_s);
 
-/// The command line of the process that started this one; none where that cannot be told.
+/// The command line of the process that started this one; none where it is not known.
 std::vector<std::string> parentCommand();
 
 /// Where roslaunch has started this process: ends it as Ctrl-C does.

@@ -5,7 +5,7 @@
 
 namespace posefusion_ros {
 
-/// A line for the log, of somebody who writes none.
+/// A line for the log, from code that does not write to the log itself.
 struct Notice {
   bool is_warning = false;
   std::string text;

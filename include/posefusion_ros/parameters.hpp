@@ -25,8 +25,8 @@ constexpr char kEndOnError[] = "end_on_error";
 constexpr char kDiagnosticPeriod[] = "diagnostic_period";
 
 /// The private parameters of one nodelet: its own ones, and the groups of pf::Config
-/// (`blur`, `pose`, ...). Everything that is asked for is checked; what nobody asks for is found by
-/// unknown(). Errors are InputError naming parameter, value and what was expected.
+/// (`blur`, `pose`, ...). Every parameter that is read is checked; unknown() finds those that are
+/// not read. Errors are InputError naming parameter, value and what was expected.
 class Parameters {
  public:
   explicit Parameters(const ros::NodeHandle& private_handle);
@@ -45,10 +45,10 @@ class Parameters {
   /// it is not empty. `groups` are those that this nodelet uses, for effective().
   pf::Config config(const std::vector<std::string>& groups);
 
-  /// Parameters that were set but that nobody asked for.
+  /// Parameters that were set but never read.
   std::vector<std::string> unknown() const;
 
-  /// All that was asked for with the values in force, "name=value name=value".
+  /// All parameters read, with the values in force, "name=value name=value".
   std::string effective() const { return effective_.str(); }
 
   /// Of these, those that are not the defaults, as a sentence.

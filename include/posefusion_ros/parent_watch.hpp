@@ -11,7 +11,7 @@
 
 namespace posefusion_ros {
 
-/// Tells whether somebody else sends a frame's transform already. A frame has one parent: with two,
+/// Whether another node sends a frame's transform already. A frame has one parent: with two,
 /// everything below it jumps between them. Thread safe.
 class ParentWatch {
  public:
@@ -21,12 +21,12 @@ class ParentWatch {
   void hear(const std::string& child, const std::string& parent, const std::string& publisher,
             bool is_static, Time now);
 
-  /// Says who sends the transform of `child`, where that is neither `publisher` with this `parent`
-  /// nor silent for two seconds; empty otherwise.
+  /// Names the node that sends the transform of `child`, unless it is `publisher` with this
+  /// `parent` or silent for two seconds; empty otherwise.
   std::string conflict(const std::string& child, const std::string& parent,
                        const std::string& publisher, Time now) const;
 
-  /// The frame above `child` that nobody gives a parent, besides `publisher` this `parent`.
+  /// The frame above `child` without a parent; `publisher` with this `parent` does not count.
   std::string rootAbove(const std::string& child, const std::string& parent,
                         const std::string& publisher) const;
 

@@ -24,7 +24,7 @@ struct PoseOutputSettings {
   bool publish_tf = true;
   bool tf_while_lost = true;  ///< with odom_frame: map -> odom goes on as it was known last
   std::string map_frame;
-  std::string odom_frame;  ///< empty: nobody owns odometry, map -> base is published
+  std::string odom_frame;  ///< empty: no odometry, map -> base is published
   std::string base_frame;  ///< empty: the optical frame of the camera
   LookupSettings lookup;
   PublishingConfig publishing;
@@ -36,21 +36,20 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless);
 ///
 /// The core's map begins at the first camera pose. The map frame begins at the base (odometry where
 /// there is one) as TF has it at that time; without a base frame the first camera counts as level.
-/// A loaded map keeps the map frame that it was made in; where its file does not tell of one (made
-/// offline), it begins at the base too, whose camera is taken to be mounted as it was then. Not
-/// thread safe.
+/// A loaded map keeps the map frame that it was made in; where its file has none (made offline), it
+/// begins at the base too, whose camera is taken to be mounted as it was then. Not thread safe.
 class PoseOutput {
  public:
   PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings);
 
   /// Publishes the pose of a located frame; `image` is the header of its colour image. False when
   /// nothing could be published, for want of a transform. `note`: what is missing, which transform
-  /// is older than the image, or who sends ours already (it is not sent then); empty when all is
-  /// well.
+  /// is older than the image, or which node sends ours already (it is not sent then); empty when
+  /// all is well.
   bool publish(const std_msgs::Header& image, const pf::FrameStatus& status, std::string& note);
 
   /// Where the robot may be while the camera is not located, as a PoseWithCovarianceStamped; no
-  /// transform, which could not tell how unsure it is. Nothing before the first located frame, and
+  /// transform, which could not carry the uncertainty. Nothing before the first located frame, and
   /// where a transform is wanting.
   void publishProvisional(const std_msgs::Header& image, const pf::ProvisionalPose& pose);
 
@@ -62,7 +61,7 @@ class PoseOutput {
   /// The core's map in the map frame; nothing until the first pose could be published.
   const std::optional<Eigen::Isometry3d>& mapFromStart() const { return T_map_start_; }
 
-  /// Loops have moved the poses told so far: the path follows. `corrected`: of the camera.
+  /// Loops have moved the poses reported so far: the path follows. `corrected`: of the camera.
   void correct(const pf::Trajectory& corrected);
 
   /// Stamps begin anew, the map goes on: so does the transform, the path begins anew.

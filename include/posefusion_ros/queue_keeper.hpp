@@ -18,7 +18,7 @@ namespace posefusion_ros {
 class QueueKeeper {
  public:
   QueueKeeper() = default;
-  /// Closes the queues, and keeps them for good: nobody tells when the network thread is through.
+  /// Closes the queues, and keeps them for good: it is unknown when the network thread is done.
   ~QueueKeeper() {
     static std::mutex& mutex = *new std::mutex;  // not destroyed either
     static auto& closed = *new Queues;

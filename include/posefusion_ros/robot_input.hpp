@@ -17,7 +17,7 @@
 
 namespace posefusion_ros {
 
-/// Which of the robot's other sensors tell of the camera's motion.
+/// Which of the robot's other sensors measure the camera's motion.
 struct RobotInputSettings {
   std::string imu_topic;          ///< sensor_msgs/Imu; empty: none
   std::string odometry_topic;     ///< nav_msgs/Odometry; empty: none

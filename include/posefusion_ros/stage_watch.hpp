@@ -12,7 +12,7 @@
 
 namespace posefusion_ros {
 
-/// What /diagnostics tells of one nodelet of the chain: how fast frames pass, how late they are,
+/// What /diagnostics reports of one nodelet of the chain: how fast frames pass, how late they are,
 /// how many are given up and why, and values of its own. Thread safe.
 class StageWatch {
  public:
@@ -26,7 +26,7 @@ class StageWatch {
   /// A frame is given up; `outcome` is one of TrackingStatusMsg.
   void givenUp(Time now, std::uint8_t outcome);
 
-  /// Why stamps and ROS time are of different clocks, told as WARN; empty: they are of one. How
+  /// Why stamps and ROS time are of different clocks, reported as WARN; empty: they are of one. How
   /// late frames pass is not known then.
   void tellClock(const std::string& defect);
 
@@ -34,7 +34,7 @@ class StageWatch {
   void set(const std::string& key, const std::string& value);
 
   /// How the nodelet is, besides its frames: a level of DiagnosticStatus, and why where it is not
-  /// OK. Holds until it is told anew.
+  /// OK. Holds until the next call.
   void tell(int level, const std::string& text);
 
   /// From now on it is no warning that nothing comes.

@@ -15,7 +15,7 @@ namespace posefusion_ros {
 /// yellow in doubt, red while lost. `lost_s`: for how long.
 visualization_msgs::Marker toStateText(const TrackingStatusMsg& status, double lost_s);
 
-/// Publishes the status of each frame and, while someone listens, the state as a text. Thread safe.
+/// Publishes the status of each frame and, with subscribers, the state as a text. Thread safe.
 class StatusOutput {
  public:
   /// From now on statuses are sent; those before are not.

@@ -7,7 +7,7 @@
 
 namespace posefusion_ros {
 
-/// Name and type of a topic that somebody publishes.
+/// Name and type of a published topic.
 using NamedType = std::pair<std::string, std::string>;
 
 /// For a topic that nothing came on: "; of its type there are /a, /b", those with the most like

@@ -169,7 +169,7 @@ class BlurGateNodelet : public ChainNodelet {
     sets_since_look_ = false;
   }
 
-  /// The topic, and where nobody publishes it, which ones could be meant.
+  /// The topic and, where it has no publisher, which ones could be meant.
   std::string topicText(const ImageSubscriber& image) const {
     return image.hasPublisher() ? image.topic()
                                 : unpublished(image.topic(), image.type(), image.advice());
@@ -181,7 +181,7 @@ class BlurGateNodelet : public ChainNodelet {
   }
   std::string unpublished(const std::string& topic, const std::string& type,
                           const std::string& advice) const {
-    return topic + " (nobody publishes it" + advice +
+    return topic + " (it has no publisher" + advice +
            topicHint({topic, type}, getNodeHandle().getNamespace()) + ")";
   }
 

@@ -115,7 +115,7 @@ class FusionNodelet : public ChainNodelet {
                                                  std::move(actions), initial);
   }
 
-  /// To someone who has just begun to listen.
+  /// For a new subscriber.
   void showMap() {
     map_output_->reset();
     publishMap(last_);

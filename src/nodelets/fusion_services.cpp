@@ -34,7 +34,7 @@ FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session,
 }
 
 void FusionServices::shutdown() {
-  is_ending_ = true;  // who waits for frames
+  is_ending_ = true;  // for calls that wait for frames
   for (ros::ServiceServer& service : services_) service.shutdown();
   waiter_.stop();
   settings_.reset();

@@ -210,17 +210,16 @@ class SegmenterNodelet : public ChainNodelet {
           toImage(pf::drawPeople(frame.color, result.people, result.mask), "rgb8", header));
     }
     flow_publisher_.publish(SparseFlowMsg::ConstPtr(toMessage(flow, header)));
-    const bool nobody = result.static_depth.data == frame.depth.data;
-    depth_publisher_.publish(
-        nobody ? depth
-               : sensor_msgs::ImageConstPtr(toImage(result.static_depth, depth->encoding, header)));
-    const auto orNobody = [&](const cv::Mat& mask) {
-      const cv::Mat nobody_there = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
-      return sensor_msgs::ImageConstPtr(
-          toImage(mask.empty() ? nobody_there : mask, "mono8", header));
+    const bool unchanged = result.static_depth.data == frame.depth.data;
+    depth_publisher_.publish(unchanged ? depth
+                                       : sensor_msgs::ImageConstPtr(toImage(
+                                             result.static_depth, depth->encoding, header)));
+    const auto orEmpty = [&](const cv::Mat& mask) {
+      const cv::Mat empty_mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
+      return sensor_msgs::ImageConstPtr(toImage(mask.empty() ? empty_mask : mask, "mono8", header));
     };
-    in_map_publisher_.publish(orNobody(result.in_map_mask));
-    mask_publisher_.publish(orNobody(result.mask));
+    in_map_publisher_.publish(orEmpty(result.in_map_mask));
+    mask_publisher_.publish(orEmpty(result.mask));
     watch().set("people", std::to_string(result.people.people.size()));
     passed(header.stamp);
   }

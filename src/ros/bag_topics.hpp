@@ -17,7 +17,7 @@ TopicTypes topicsOf(const rosbag::Bag& bag);
 
 /// Fills in the topics that are not given. `people` and `truth` stay empty when there are none, and
 /// `camera_info` too. Throws InputError that lists what the bag has when colour or depth cannot be
-/// told or a given topic is not there or of the wrong type.
+/// identified or a given topic is not there or of the wrong type.
 BagTopics chooseTopics(const TopicTypes& available, const BagTopics& given);
 
 }  // namespace posefusion_ros

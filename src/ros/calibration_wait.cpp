@@ -29,7 +29,7 @@ std::string CalibrationWait::look(const CalibrationProgress& progress, Clock::ti
   }
   if (now - begun_ > kLongest) {
     throw pf::InputError("the loop closer has not answered within " +
-                         std::to_string(kLongest.count()) + " s: the log tells what it learns");
+                         std::to_string(kLongest.count()) + " s: the log shows what it learns");
   }
   return {};
 }

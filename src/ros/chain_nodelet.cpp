@@ -50,7 +50,7 @@ void ChainNodelet::startDiagnostics() {
   diagnostics_->add("frames", [this](diagnostic_updater::DiagnosticStatusWrapper& out) {
     watch_.report(std::chrono::steady_clock::now(), out);
   });
-  // A queue of its own kind: the serial one may be held up, which is what should be told.
+  // A multi-threaded queue: the serial one may be held up, which is what should be reported.
   diagnostics_timer_ = getMTNodeHandle().createWallTimer(
       ros::WallDuration(period_s),
       ros::WallTimerCallback([this](const ros::WallTimerEvent&) { diagnostics_->force_update(); }));

@@ -37,7 +37,7 @@ std::string ImageSubscriber::advice() const {
   if (transport_ == "raw") return {};
   const std::string plugin = transport_ == "compressed" ? "compressed-image-transport"
                                                         : "compressed-depth-image-transport";
-  return "; who sends the images offers it with the package ros-noetic-" + plugin +
+  return "; the publisher of the images offers it with the package ros-noetic-" + plugin +
          " (Debian 12 has none): without, image_transport is to be raw";
 }
 

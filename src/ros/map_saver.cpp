@@ -103,7 +103,7 @@ std::string MapSaver::saveHere(const MapToSave& map) {
          (continued.empty() ? "" : "; " + continued);
 }
 
-/// Brings the file up to date that is gone on in; tells so.
+/// Updates the file that the session continues; returns a sentence that says so.
 std::string MapSaver::saveContinued(const MapToSave& map) {
   if (continued_.empty()) return {};
   recording_->update(map.camera, map.mapper);

@@ -29,7 +29,7 @@ MappingSettings readMapping(Parameters& parameters) {
   s.saver.settings = pf::toYaml(s.config);
   s.map_file = parameters.text("map_file", "");
   s.calibration_file = parameters.text("calibration_file", "");
-  // A lossless replay is what the offline run is: nothing but its arguments tells it anything.
+  // A lossless replay equals the offline run: it uses nothing but its arguments.
   s.store = readCalibrationStore(parameters, !s.lossless);
   s.localize_only = parameters.flag("localize_only", false);
   s.continue_map = parameters.flag("continue_map", false);

@@ -20,8 +20,8 @@ void MappingSession::noteCorrection(const std::string& file) {
   notices_.push_back({false, "depth is corrected by " + file + ": " + amount});
 }
 
-/// Before the first frame: what is kept of its camera, where nothing else tells of it. A map whose
-/// file is written on stays as it was measured.
+/// Before the first frame: applies the stored calibration of its camera, where there is no other. A
+/// map whose file is written on stays as it was measured.
 void MappingSession::recallCamera(const std::string& frame_id) {
   if (isLoaded() && !pf::isSameCamera(camera_, seen_)) return;  // not the one that this is about
   is_camera_named_ = true;

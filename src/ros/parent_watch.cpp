@@ -79,7 +79,7 @@ std::string ListeningParentWatch::advice(const std::string& child,
                                          const std::string& map_frame) const {
   const std::string root = watch_.rootAbove(child, map_frame, ros::this_node::getName());
   if (root == map_frame) {
-    return "somebody else locates it in " + map_frame + ": give publish_tf:=false";
+    return "another node locates it in " + map_frame + ": give publish_tf:=false";
   }
   return "give base_frame:=" + root + " where that is the body that carries the camera, " +
          "another frame_id of the images where it is a second chain's, or publish_tf:=false";

@@ -172,7 +172,7 @@ void PoseOutput::correct(const pf::Trajectory& corrected) {
 
 std::string PoseOutput::sendTransform(const ros::Time& stamp, const std::string& child,
                                       const Eigen::Isometry3d& T) {
-  // Who came first goes on sending: two that hear each other would both fall silent.
+  // The first publisher goes on sending: two that hear each other would both fall silent.
   const std::string conflict = sends_ ? "" : parents_->conflict(child, settings_.map_frame);
   sends_ = conflict.empty();
   if (!sends_) {

@@ -11,7 +11,7 @@ namespace posefusion_ros {
 namespace {
 
 constexpr std::uint32_t kQueue = 1000;
-// What nobody takes, since no frame comes, is not kept for ever.
+// Samples that are not used, since no frame comes, are not kept for ever.
 constexpr std::size_t kMostKept = 10000;
 // A head turns little in so long; no frame waits for a transform.
 constexpr double kOldestMount_s = 0.1;

@@ -16,8 +16,8 @@ using dynamic_reconfigure::ConfigDescription;
 using dynamic_reconfigure::Reconfigure;
 namespace serialization = ros::serialization;
 
-/// In place of roscpp's own way to answer, which tells a caller that it was refused, but not why:
-/// the protocol has a text for it.
+/// In place of roscpp's own way to answer, which informs a caller of the refusal, but not of its
+/// reason: the protocol has a text for it.
 class Answerer : public ros::ServiceCallbackHelper {
  public:
   /// Returns the values in force; throws to refuse.
@@ -84,7 +84,7 @@ SettingsTopics::SettingsTopics(const ros::NodeHandle& handle, VisitSettings visi
   service_ = handle_.advertiseService(service);
 }
 
-/// To all who show the values, with what became of the last change. Returns what is told.
+/// Publishes the values to all editors, with the result of the last change. Returns the message.
 Config SettingsTopics::tell(const std::string& status) {
   Config values = valuesOf(visit_);
   addStatus(values, status);
@@ -104,7 +104,7 @@ Config SettingsTopics::set(Config request) {
     change_(request);
   } catch (const std::exception& error) {
     ROS_ERROR("%s: nothing is changed: %s", handle_.getNamespace().c_str(), error.what());
-    // An editor shows the refused value until it is told the one in force.
+    // An editor shows the refused value until it receives the one in force.
     tell(std::string("nothing is changed: ") + error.what());
     throw;
   }
