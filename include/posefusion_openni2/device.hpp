@@ -11,12 +11,12 @@
 
 namespace pf::openni2 {
 
-/// Who the device is.
+/// Identity of a device.
 struct DeviceIdentity {
   std::string uri;
   std::string vendor;
   std::string name;
-  std::string serial;  ///< empty when the device tells none
+  std::string serial;  ///< empty when the device reports none
   bool is_file = false;
 };
 
@@ -67,7 +67,7 @@ class Device {
   /// then; true when it has just stepped in.
   bool limitExposure();
 
-  /// Degrees Celsius inside the device; empty when it tells none.
+  /// Degrees Celsius inside the device; empty when it reports none.
   std::optional<double> temperature_c() const;
 
   /// Records both streams without loss into an .oni file, first under a temporary name. Throws

@@ -19,9 +19,9 @@ std::vector<DeviceDescription> listDevices();
 /// Whether the setting names an .oni file.
 bool isFileName(const std::string& device);
 
-/// The URI that `device` (see DeviceSettings) stands for. Throws InputError that names what was
-/// looked for, what there is, and a missing udev rule where that is the cause. Opens cameras to
-/// compare serial numbers. Needs a Session.
+/// The URI of `device` (see DeviceSettings). Throws InputError that names what was looked for, what
+/// there is, and a missing udev rule where that is the cause. Opens cameras to compare serial
+/// numbers. Needs a Session.
 std::string findUri(const std::string& device);
 
 }  // namespace pf::openni2

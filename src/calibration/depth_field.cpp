@@ -13,7 +13,7 @@
 namespace pf {
 namespace {
 
-// Places that stand for the image.
+// Places that represent the image.
 constexpr int kAcross = 64, kDown = 48;
 
 /// The four cubic B-splines that are not zero at a place in [0, 1], and their derivatives by it

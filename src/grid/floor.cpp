@@ -76,7 +76,7 @@ std::pair<Vector3d, double> fitted(const FacingUp& found, const Vector3d& up, do
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
   Vector3d normal = solver.eigenvectors().col(0);
   if (normal.dot(up) < 0) normal = -normal;
-  // A floor of which little was seen does not tell which way it leans.
+  // A floor of which little was seen does not give its tilt.
   if (normal.dot(up) < kNarrow) normal = up;
   return {normal, normal.dot(mean)};
 }

@@ -27,7 +27,7 @@ RecordedEvents loadEvents(const std::string& path) {
   }
   std::sort(events.blurred_ns.begin(), events.blurred_ns.end());
   std::sort(events.fall_starts_ns.begin(), events.fall_starts_ns.end());
-  std::sort(events.fall_ends_ns.begin(), events.fall_ends_ns.end());  // nobody falls while falling
+  std::sort(events.fall_ends_ns.begin(), events.fall_ends_ns.end());  // falls do not overlap
   return events;
 }
 

@@ -57,7 +57,7 @@ void AtomicFile::commit(Until until) {
     throw InputError(path_ + ": cannot be written: " + (errno != 0 ? reason() : "disk full?"));
   }
   stream_.close();
-  // Bytes before name: a name that comes first may stand for an empty file after a power cut.
+  // Bytes before name: a name written first may belong to an empty file after a power cut.
   if (!stream_ || (until == Until::disk && !sync(temporary_))) {
     throw InputError(path_ + ": cannot be written: " + reason());
   }

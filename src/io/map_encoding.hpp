@@ -33,7 +33,7 @@ inline std::string keyframeBlob(std::int64_t keyframe) {
   return kKeyframeBlobs + std::to_string(keyframe);
 }
 
-/// Tells changed bytes with 64 bits (FNV-1a over words).
+/// Detects changed bytes with 64 bits (FNV-1a over words).
 std::int64_t checksumOf(std::string_view bytes);
 
 }  // namespace pf

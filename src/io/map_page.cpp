@@ -80,7 +80,7 @@ std::string factsOf(const PageGeometry& geometry) {
 void writeChunks(std::ostream& out, const PageGeometry& geometry) {
   for (std::size_t i = 0; i < geometry.chunks.size(); ++i) {
     const PageChunk& chunk = geometry.chunks[i];
-    // One text for both: its vertices are a multiple of the three bytes that four characters tell.
+    // One text for both: its vertices are a multiple of the three bytes that four characters hold.
     out << "<script id=\"chunk" << i << "\" type=\"application/octet-stream\">";
     static_assert(sizeof(PageVertex) % 3 == 0, "else padding would stand between the two");
     writeBase64(out, chunk.vertices.data(), chunk.vertices.size() * sizeof(PageVertex));

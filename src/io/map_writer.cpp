@@ -17,7 +17,7 @@
 namespace pf {
 namespace {
 
-/// Makes the file, empty, so that two who create it cannot both succeed.
+/// Makes the file, empty, so that two processes that create it cannot both succeed.
 SqliteDatabase openNew(const std::string& path) {
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) throw InputError(path + ": cannot be made: " + std::strerror(errno));

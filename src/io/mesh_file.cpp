@@ -50,7 +50,7 @@ void writeObj(const TriangleMesh& mesh, std::ostream& out) {
   }
 }
 
-/// Where the faces begin. Throws where the header tells of others than saveMesh() writes.
+/// Where the faces begin. Throws where the header describes other faces than saveMesh() writes.
 std::size_t facesBegin(const std::string& text, const PlyVertices& vertices, std::size_t& count) {
   const std::string header = text.substr(0, vertices.begin);
   const std::size_t element = header.find("\nelement face ");

@@ -14,7 +14,7 @@ namespace pf {
 /// The file beside a database that holds what was written last, until it is closed.
 std::string logOf(const std::string& path);
 
-/// What lies on the disk of a database: what SQLite itself does not tell apart.
+/// The files of a database on disk: states that SQLite itself does not distinguish.
 struct SqliteFiles {
   bool is_closed = false;  ///< the file was closed: it has no log
   bool has_log = false;    ///< there is one, not empty
@@ -57,7 +57,7 @@ class SqliteDatabase {
   SqliteDatabase(const std::string& path, Access access);
 
   SqliteStatement prepare(const std::string& sql) const { return {database_.get(), path_, sql}; }
-  /// Runs statements that give no rows, or whose rows nobody wants.
+  /// Runs statements without rows, or whose rows are not needed.
   void run(const std::string& sql) const;
   /// The first column of the first row.
   std::int64_t integer(const std::string& sql) const;

@@ -36,7 +36,7 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-/// The cells of a line; a comma between quotes does not part them, two quotes stand for one.
+/// The cells of a line; a comma between quotes does not part them, two quotes mean one.
 std::vector<std::string> cellsOf(const std::string& line) {
   std::vector<std::string> cells(1);
   bool inside = false;

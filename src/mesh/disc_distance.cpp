@@ -15,17 +15,17 @@ using Eigen::Vector3i;
 
 constexpr std::size_t kGrain = 4;
 
-/// What the corners of a block are told.
-struct Told {
+/// Sums at the corners of a block.
+struct CornerSums {
   std::array<float, BlockLattice::kCorners> nearest, weight, distance;
   std::array<Vector3f, BlockLattice::kCorners> side;  ///< normal of the nearest disc
 };
 
-void tell(const DiscMaker& maker, const DiscBlocks& blocks, std::size_t i, Told& told,
-          float* values) {
-  told.nearest.fill(std::numeric_limits<float>::max());
-  told.weight.fill(0);
-  told.distance.fill(0);
+void addDiscs(const DiscMaker& maker, const DiscBlocks& blocks, std::size_t i, CornerSums& sums,
+              float* values) {
+  sums.nearest.fill(std::numeric_limits<float>::max());
+  sums.weight.fill(0);
+  sums.distance.fill(0);
   const auto corner = [&](std::size_t, const Vector3i& at, Vector3f& point) {
     point = blocks.lattice.point(at);
     return true;
@@ -33,19 +33,19 @@ void tell(const DiscMaker& maker, const DiscBlocks& blocks, std::size_t i, Told&
   forEachPointOf(maker, blocks, i, corner,
                  [&](std::size_t at, const Disc& disc, const auto& where) {
                    const float distance = where.toDisc(disc.radius);
-                   if (distance >= told.nearest[at]) return;
-                   told.nearest[at] = distance;
-                   told.side[at] = disc.normal;
+                   if (distance >= sums.nearest[at]) return;
+                   sums.nearest[at] = distance;
+                   sums.side[at] = disc.normal;
                  });
   forEachPointOf(maker, blocks, i, corner,
                  [&](std::size_t at, const Disc& disc, const auto& where) {
-                   const float same_side = std::max(0.0F, disc.normal.dot(told.side[at]));
+                   const float same_side = std::max(0.0F, disc.normal.dot(sums.side[at]));
                    const float weight = disc.weight * same_side * same_side * disc.closeness(where);
-                   told.weight[at] += weight;
-                   told.distance[at] += weight * where.above;
+                   sums.weight[at] += weight;
+                   sums.distance[at] += weight * where.above;
                  });
   for (std::size_t at = 0; at < BlockLattice::kCorners; ++at) {
-    if (told.weight[at] > 0) values[at] = told.distance[at] / told.weight[at];
+    if (sums.weight[at] > 0) values[at] = sums.distance[at] / sums.weight[at];
   }
 }
 
@@ -56,9 +56,9 @@ DistanceField discDistance(const SurfelArrays& surfels, const DiscBlocks& blocks
   const DiscMaker maker(surfels, config);
   DistanceField field(blocks.lattice);
   parallelFor(blocks.lattice.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Told told;
+    CornerSums sums;
     for (std::size_t i = begin; i < end; ++i) {
-      tell(maker, blocks, i, told, &field.values[i * BlockLattice::kCorners]);
+      addDiscs(maker, blocks, i, sums, &field.values[i * BlockLattice::kCorners]);
     }
   });
   return field;

@@ -16,8 +16,8 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 
 constexpr float kLeastSide_cells = 4;
-// From the centre of a triangle to the corners of the cells that tell of its vertices, and of those
-// beside it, whose triangles tell how the vertices face.
+// From the centre of a triangle to the corners of the cells that determine its vertices, and of
+// those beside it, whose triangles determine the normals.
 constexpr float kStencil_cells = 4;
 
 float reachOf(const MeshConfig& config) {

@@ -15,7 +15,7 @@ using Distance = std::function<float(const Vector3f&)>;
 constexpr int kGroup = 4;  // corners along each side that are sampled together
 static_assert(BlockLattice::kSide % kGroup == 0);
 
-/// Samples a group of corners; one sample tells whether the surface can be among them at all.
+/// Samples a group of corners; one sample decides whether the surface can be among them at all.
 void sampleGroup(const Distance& distance, const BlockLattice& lattice, const Vector3i& corner,
                  const Vector3i& group, float* values) {
   const float reach = 1.3F * kGroup * lattice.cell_m();

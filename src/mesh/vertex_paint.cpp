@@ -16,8 +16,8 @@ using Eigen::Vector3i;
 constexpr std::size_t kGrain = 4;
 constexpr float kSameSide = 0.2F;  // 78 degrees
 
-/// Sums of what one vertex is told.
-struct Told {
+/// Sums of the surfels at one vertex.
+struct VertexSums {
   Vector3f normal = Vector3f::Zero(), color = Vector3f::Zero();
   float weight = 0, distance = 0, color_weight = 0;
   float nearest = std::numeric_limits<float>::max();
@@ -50,13 +50,13 @@ std::vector<Vector3f> facings(const SurfaceNet& net) {
   return normals;
 }
 
-MeshColor toColor(const Told& told) {
-  if (told.color_weight <= 0) return MeshColor::Constant(128);
-  const Vector3f mean = told.color / told.color_weight;
+MeshColor toColor(const VertexSums& sums) {
+  if (sums.color_weight <= 0) return MeshColor::Constant(128);
+  const Vector3f mean = sums.color / sums.color_weight;
   return mean.cwiseMax(0.0F).cwiseMin(255.0F).array().round().cast<unsigned char>();
 }
 
-/// Tells the vertices of single blocks.
+/// Paints the vertices of single blocks.
 class Painter {
  public:
   Painter(const SurfelArrays& surfels, const DiscBlocks& blocks, const MeshConfig& config,
@@ -69,11 +69,11 @@ class Painter {
         bridge_m_(static_cast<float>(config.bridge_m)),
         least_surfels_(config.least_surfels) {}
 
-  void paint(std::size_t i, std::vector<Told>& told) {
+  void paint(std::size_t i, std::vector<VertexSums>& sums) {
     const std::size_t first = net_.first[i];
     const std::size_t last = i + 1 < net_.first.size() ? net_.first[i + 1] : net_.positions.size();
     if (first == last) return;
-    told.assign(last - first, {});
+    sums.assign(last - first, {});
     const auto pointAt = [&](std::size_t cell, const Vector3i&, Vector3f& point) {
       const std::uint32_t vertex = net_.vertex(i, cell);
       if (vertex == SurfaceNet::kNone) return false;
@@ -84,20 +84,20 @@ class Painter {
                    [&](std::size_t cell, const Disc& disc, const Disc::Place& where) {
                      const std::uint32_t vertex = net_.vertex(i, cell);
                      const float same = disc.normal.dot(out_.normals[vertex]);
-                     if (same > kSameSide) told[vertex - first].add(disc, where, same);
+                     if (same > kSameSide) sums[vertex - first].add(disc, where, same);
                    });
-    for (std::size_t k = 0; k < told.size(); ++k) finish(told[k], first + k);
+    for (std::size_t k = 0; k < sums.size(); ++k) finish(sums[k], first + k);
   }
 
  private:
-  void finish(const Told& told, std::size_t vertex) {
-    if (!(told.weight > 0)) return;
-    out_.normals[vertex] = told.normal.normalized();
-    const float step = std::clamp(told.distance / told.weight, -most_m_, most_m_);
+  void finish(const VertexSums& sums, std::size_t vertex) {
+    if (!(sums.weight > 0)) return;
+    out_.normals[vertex] = sums.normal.normalized();
+    const float step = std::clamp(sums.distance / sums.weight, -most_m_, most_m_);
     net_.positions[vertex] -= step * out_.normals[vertex];
-    out_.colors[vertex] = toColor(told);
-    const bool near = told.nearest <= bridge_m_ * bridge_m_;
-    out_.seen[vertex] = near && told.surfels >= least_surfels_ ? 1 : 0;
+    out_.colors[vertex] = toColor(sums);
+    const bool near = sums.nearest <= bridge_m_ * bridge_m_;
+    out_.seen[vertex] = near && sums.surfels >= least_surfels_ ? 1 : 0;
   }
 
   DiscMaker maker_;
@@ -118,8 +118,8 @@ PaintedVertices paint(const SurfelArrays& surfels, const DiscBlocks& blocks,
   out.seen.resize(net.positions.size());
   Painter painter(surfels, blocks, config, net, out);
   parallelFor(blocks.lattice.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Told> told;
-    for (std::size_t i = begin; i < end; ++i) painter.paint(i, told);
+    std::vector<VertexSums> sums;
+    for (std::size_t i = begin; i < end; ++i) painter.paint(i, sums);
   });
   return out;
 }

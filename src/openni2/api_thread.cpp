@@ -35,7 +35,7 @@ class StackPool {
     void* stack = mmap(nullptr, kStackBytes, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_NORESERVE, -1, 0);
     if (stack == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "a stack");
-    // An overflow meets a page that nobody may touch.
+    // An overflow meets a page without access rights.
     mprotect(stack, static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), PROT_NONE);
     return stack;
   }

@@ -68,7 +68,7 @@ std::vector<DeviceDescription> listDevices() {
   openni::OpenNI::enumerateDevices(&infos);
   std::vector<DeviceDescription> devices;
   for (int i = 0; i < infos.getSize(); ++i) {
-    if (isFileName(infos[i].getUri())) continue;  // a file that somebody plays
+    if (isFileName(infos[i].getUri())) continue;  // a recording being played
     devices.push_back({infos[i].getUri(), infos[i].getVendor(), infos[i].getName()});
   }
   return devices;

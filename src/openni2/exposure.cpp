@@ -43,8 +43,8 @@ std::vector<std::string> ExposureControl::apply(const ExposureSettings& settings
   if (!settings.auto_exposure) setFixed(settings, failures);
   if (settings.auto_exposure && settings.max_exposure > 0 && !exposure()) {
     failures.push_back(
-        "max_exposure has no effect: the device does not tell its exposure; set "
-        "auto_exposure to false and exposure to what the motion allows");
+        "max_exposure has no effect: the device does not report its exposure; set auto_exposure to "
+        "false and exposure to what the motion allows");
   }
   return failures;
 }

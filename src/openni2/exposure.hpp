@@ -12,8 +12,8 @@
 namespace pf::openni2 {
 
 /// The exposure of the colour stream. OpenNI2 has no property for the longest exposure that the
-/// automatic may choose: where the device tells its exposure, this class watches it and holds it at
-/// the limit; where it does not, `apply` says so.
+/// automatic may choose: where the device reports its exposure, this class watches it and holds it
+/// at the limit; where it does not, `apply` says so.
 class ExposureControl {
  public:
   explicit ExposureControl(openni::VideoStream& color) : color_(color) {}

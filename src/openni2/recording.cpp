@@ -66,7 +66,7 @@ Recording::~Recording() {
   try {
     finish();
   } catch (const InputError&) {
-    // The frames are in the temporary file; a destructor has nobody to tell.
+    // The frames are in the temporary file; a destructor cannot report the error.
   }
 }
 

@@ -13,7 +13,7 @@ constexpr double kKept_s = 10.0, kMostCarriedOn_s = 0.02;
 // Less weight than gravity for so long: a step while walking is shorter.
 constexpr double kFreeFall_s = 0.08;
 constexpr double kBiasMemory_s = 20.0, kMostBias_rad_s = 0.2;
-// Nothing is told of the shift: wider than what any robot does between two frames.
+// The shift is not measured: wider than any motion of a robot between two frames.
 constexpr double kAnyShift_m = 10.0;
 
 }  // namespace

@@ -43,7 +43,7 @@ struct Ending {
   ~Ending() { out.put(std::nullopt); }
 };
 
-/// Takes what is left, so that who puts never waits for ever, and tells the source to stop.
+/// Takes what is left, so that the producer never waits for ever, and stops the source.
 template <typename Item>
 struct Draining {
   Handover<Item>& in;

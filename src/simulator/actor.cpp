@@ -18,7 +18,7 @@ void approach(double& amount, double wanted, double seconds) {
 }
 
 constexpr double kThingReach_m = 0.9;  // at which people walk round things that stand
-constexpr double kKeepsRight_s = 2.0;  // after a touch of a wall: two who meet there part
+constexpr double kKeepsRight_s = 2.0;  // after touching a wall: two people that meet there separate
 
 /// Steering away from places ahead: to the right of those in the way, or always.
 double evade(const ActorState& state, const std::vector<Vector2d>& others, bool keeps_right,
@@ -175,7 +175,7 @@ void Actor::push(const Vector2d& by) {
   keepOffWalls(before);
 }
 
-/// Who steps into a wall slides along it, and looks for the way anew.
+/// A person that steps into a wall slides along it, and searches the way anew.
 void Actor::keepOffWalls(const Vector2d& before) {
   if (walkway_->isFloor(state_.at) || !walkway_->isFloor(before)) return;
   const Vector2d along_x(state_.at.x(), before.y()), along_y(before.x(), state_.at.y());

@@ -29,7 +29,7 @@ class Wish {
 
   double at(double t) {
     const Vector2d ahead = path_.at(t).linear().col(2).head<2>();
-    // Who looks at the ceiling or at the floor has no heading.
+    // A view of the ceiling or of the floor has no heading.
     if (ahead.norm() > 0.3) heading_ = unwrapped(std::atan2(ahead.y(), ahead.x()));
     const Vector3d way =
         path_.at(t + kStride_s).translation() - path_.at(t - kStride_s).translation();

@@ -23,7 +23,7 @@ struct BodyPose {
 /// Camera coordinates to those of base_link (x ahead, y left, z up) by the joints of the neck.
 Eigen::Isometry3d baseFromCamera(const LegsConfig& config, const NeckAngles& neck);
 
-/// As an encoder of the joint tells them.
+/// As measured by the encoders of the joints.
 NeckAngles encoded(const LegsConfig& config, const NeckAngles& neck);
 
 /// The heading of a frame whose x axis is ahead: rad, about z.

@@ -37,8 +37,9 @@ inline void visitFields(ImuConfig& c, FieldVisitor& v) {
            "density of the walk of the accelerometer's bias");
   v.number("gyro_bias_rad_s", c.gyro_bias_rad_s, 0.0, 10.0, "sigma of its bias at the beginning");
   v.number("accel_bias_m_s2", c.accel_bias_m_s2, 0.0, 10.0, "sigma of its bias at the beginning");
-  v.number("gyro_full_scale_deg_s", c.gyro_full_scale_deg_s, 1.0, 1e5, "largest rate it can tell");
-  v.number("accel_full_scale_g", c.accel_full_scale_g, 1.0, 1e4, "largest force it can tell");
+  v.number("gyro_full_scale_deg_s", c.gyro_full_scale_deg_s, 1.0, 1e5,
+           "largest rate it can measure");
+  v.number("accel_full_scale_g", c.accel_full_scale_g, 1.0, 1e4, "largest force it can measure");
   v.number("shock", c.shock, 0.0, 100.0,
            "sigma of the body's ringing, times the acceleration above shock_from_g");
   v.number("shock_from_g", c.shock_from_g, 0.0, 1e4, "acceleration that the body rings from");

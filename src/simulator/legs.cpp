@@ -62,15 +62,15 @@ class Belief {
       if (step.end_s <= falls_[i].start_s || step.end_s > falls_[i].end_s) continue;
       return inFall(step, falls_[i], hash(seed_, kFall, static_cast<std::uint32_t>(i)));
     }
-    Motion told = step.truth;
-    told.way_m.head<2>() *= scale_;
-    told.turn_rad *= turn_scale_;
+    Motion sensed = step.truth;
+    sensed.way_m.head<2>() *= scale_;
+    sensed.turn_rad *= turn_scale_;
     const LegVariance spread = driftOf(c_, step.walked_m, std::abs(step.truth.turn_rad));
     for (std::uint32_t k = 0; k < 3; ++k) {
-      told.way_m[k] += std::sqrt(spread.place_m2) * gaussian(hash(seed_, kDrift, step.index, k));
+      sensed.way_m[k] += std::sqrt(spread.place_m2) * gaussian(hash(seed_, kDrift, step.index, k));
     }
-    told.turn_rad += std::sqrt(spread.heading_rad2) * gaussian(hash(seed_, kHeading, step.index));
-    return told;
+    sensed.turn_rad += std::sqrt(spread.heading_rad2) * gaussian(hash(seed_, kHeading, step.index));
+    return sensed;
   }
 
   /// A step that is not there: ahead of the body, and about it.
@@ -148,9 +148,9 @@ class Counter {
     Step step{{turned(off_rad_, way_m), turn_rad}, t, t - before_->time_s, 0.0, index};
     const double length_m = way_m.head<2>().norm();
     if (length_m > kStepping_m_s * step.length_s) step.walked_m = length_m;
-    const Motion told = belief_.of(step), slip = belief_.slipIn(step);
-    off_rad_ += told.turn_rad + slip.turn_rad - turn_rad;
-    sample_.T_odom_base.translation() += told.way_m + turned(off_rad_ + heading, slip.way_m);
+    const Motion sensed = belief_.of(step), slip = belief_.slipIn(step);
+    off_rad_ += sensed.turn_rad + slip.turn_rad - turn_rad;
+    sample_.T_odom_base.translation() += sensed.way_m + turned(off_rad_ + heading, slip.way_m);
     sample_.way_m += step.walked_m;
     sample_.turned_rad += std::abs(turn_rad);
   }

@@ -7,7 +7,7 @@
 namespace pf::simulator {
 
 /// What postures of scripted actions lack: turns arms about shoulders and elbows, bends the trunk,
-/// turns the head, and moves the legs too where `legs` (of somebody who does not stand on them).
+/// turns the head, and moves the legs too where `legs` (of a person that does not stand on them).
 void loosen(const Rig& rig, Posture& posture, bool legs, Dice& dice);
 
 /// The whole body moved.

@@ -15,13 +15,13 @@ std::vector<Avatar> drawCast(int count, Dice& dice);
 
 /// People at one moment.
 struct Arrangement {
-  Postures postures;                                ///< those who are away are far below the floor
+  Postures postures;                                ///< absent people are far below the floor
   std::vector<char> present;                        ///< of each
   Eigen::Vector3d focus = Eigen::Vector3d::Zero();  ///< worth looking at
 };
 
-/// Nobody (sometimes) up to all of the cast, close together or apart: walking, standing, talking,
-/// reaching, seated, crouching, lying, falling.
+/// No person (sometimes) up to all of the cast, close together or apart: walking, standing,
+/// talking, reaching, seated, crouching, lying, falling.
 Arrangement arrange(const PersonRoom& room, const Walkway& walkway, const std::vector<Avatar>& cast,
                     Dice& dice);
 

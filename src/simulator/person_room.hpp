@@ -8,7 +8,7 @@
 
 namespace pf::simulator {
 
-/// Where somebody can sit: middle of the seat's front half over the floor, direction of the knees,
+/// Where a person can sit: middle of the seat's front half over the floor, direction of the knees,
 /// height.
 struct Seat {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
@@ -16,7 +16,7 @@ struct Seat {
   double height_m = 0.45;
 };
 
-/// Where somebody can lie: the middle, direction of the long side, height.
+/// Where a person can lie: the middle, direction of the long side, height.
 struct Bed {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;

@@ -110,12 +110,12 @@ void checkScene(const Scenario& scenario, const World& world) {
   const Walkway standing(world, kStanding_m), walking(world, kWalkClearance_m);
   for (std::size_t i = 0; i < scenario.people.size(); ++i) {
     const PersonSpec& person = scenario.people[i];
-    const std::string who = entryOf("people", i) + ".";
+    const std::string entry = entryOf("people", i) + ".";
     const bool seated = !person.script.empty() && person.script.front().kind == Action::Kind::sit;
-    if (!seated) expectStandable(who + "start_m", world, standing, person.start_m);
+    if (!seated) expectStandable(entry + "start_m", world, standing, person.start_m);
     for (std::size_t k = 0; k < person.script.size(); ++k) {
       const Action& a = person.script[k];
-      const std::string key = who + entryOf("script", k) + ".";
+      const std::string key = entry + entryOf("script", k) + ".";
       const Vector2d at = a.at_m.head<2>();
       if (a.kind == Action::Kind::walk) expectStandable(key + "to", world, standing, at);
       if (a.kind == Action::Kind::sit) expectInside(key + "on", world, at);

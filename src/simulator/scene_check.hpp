@@ -9,7 +9,7 @@
 namespace pf::simulator {
 
 /// Throws InputError, naming the entry of the scene file and the place, for things outside of all
-/// rooms, and for people who begin or are sent where nobody can stand.
+/// rooms, and for people that begin or are sent where a person cannot stand.
 void checkScene(const Scenario& scenario, const World& world);
 
 /// Throws InputError, naming time and place, when the camera is ever outside all rooms, inside a

@@ -15,8 +15,8 @@ struct ThingWatch {
   Answer sees;     ///< its centre is in the picture, near enough, nothing before it
 };
 
-/// The things of a scenario while its people play, step by step: they move by themselves, or as
-/// those who hold them tell. Not thread safe.
+/// The things of a scenario while its people play, step by step: they move by themselves, or with
+/// the people that hold them. Not thread safe.
 class ThingStage {
  public:
   ThingStage(const std::vector<ThingSpec>& specs, const std::vector<ThingShape>& shapes,
@@ -29,7 +29,7 @@ class ThingStage {
   /// Half of its extent (m) in a direction of the world's floor.
   double halfExtent(std::size_t thing, double yaw_rad) const;
 
-  /// Somebody moves it, or it moves itself.
+  /// A person moves it, or it moves itself.
   bool isBusy(std::size_t thing) const;
   void take(std::size_t thing, std::size_t person);
   void put(std::size_t thing, const ThingPose& pose) { now_[thing].pose = pose; }

@@ -18,10 +18,10 @@ struct ThingChange {
 /// A thing over the whole time, in steps of kActorStep_s. Thread safe once it is made.
 class ThingTrack {
  public:
-  static constexpr int kAtRest = -2, kItself = -1;  ///< else the number of the person who moves it
+  static constexpr int kAtRest = -2, kItself = -1;  ///< else the number of the person that moves it
 
   void add(const ThingPose& pose, int mover) { steps_.push_back({pose, mover}); }
-  /// It stays where it is at first, and nobody touches it.
+  /// It stays at its first place, and no person touches it.
   void freeze();
 
   ThingPose at(double time_s) const;

@@ -18,7 +18,7 @@ struct FrameRecord {
 };
 FrameRecord recordOf(const SimulatedFrame& frame);
 
-/// 2-D and 3-D joints of everybody in every frame, as JSON.
+/// 2-D and 3-D joints of all people in every frame, as JSON.
 void saveJoints(const std::string& path, const std::vector<FrameRecord>& frames);
 
 /// Falls, blurred and dropped frames, exposure, as JSON; where rooms have names, their places and

@@ -131,7 +131,7 @@ SavedMap buildingOf(const Room& room, const Options& options) {
   return map;
 }
 
-/// The camera of the recording, told once where it is.
+/// The camera of the recording, whose pose is given once.
 class Walk {
  public:
   Walk(const std::vector<RgbdFrame>& frames, const Room& room, Mapper& mapper)

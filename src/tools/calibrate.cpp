@@ -86,7 +86,7 @@ DepthCalibration calibrationBy(const CalibrationViews& seen, const FieldEstimate
     if (!estimate.worth_taking) throw InputError(options.input + ": " + estimate.reason);
     return calibration;
   }
-  // Depth that was corrected already tells what that correction left.
+  // Depth that was corrected already shows what that correction left.
   const std::string doubt = estimate.doubtOfStep(seen.corrected_by->pairs);
   if (doubt.empty()) {
     calibration.field = seen.corrected_by->field.then(estimate.field).centred();

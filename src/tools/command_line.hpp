@@ -26,9 +26,9 @@ class CommandLine {
  public:
   CommandLine(std::string about, std::string name);
 
-  /// `names`: "--long", "-l,--long", or a name without dashes: an argument, told by its place.
-  /// A vector takes all arguments that are left, or one value each time. The value that the
-  /// variable has is told as the default.
+  /// `names`: "--long", "-l,--long", or a name without dashes: a positional argument.
+  /// A vector takes all arguments that are left, or one value each time. The value of the variable
+  /// is shown as the default.
   template <class T>
   Option* addOption(const std::string& names, T& variable, const std::string& help = "");
   Option* addFlag(const std::string& names, bool& variable, const std::string& help = "");

@@ -100,7 +100,7 @@ CommandLine* addKnownCommand(CommandLine& app, KnownQuestion& question) {
 
 CommandLine* addMasksCommand(CommandLine& app, PairQuestion& question) {
   auto* command = app.addCommand("masks", "masks of people against true ones");
-  command->addOption("truth", question.truth, "sequence with mask/ (without: nobody is in it)")
+  command->addOption("truth", question.truth, "sequence with mask/ (without: no person is in it)")
       ->required();
   command->addOption("masks", question.checked, "output folder of posefusion_run --save-masks")
       ->required()

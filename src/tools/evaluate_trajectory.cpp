@@ -26,7 +26,7 @@ std::string trajectoryFile(const std::string& estimate) {
   return fs::is_directory(estimate) ? (fs::path(estimate) / "trajectory.txt").string() : estimate;
 }
 
-/// What the run of a folder told at the time; nothing for a file, or of a run that has not kept it.
+/// What the run of a folder reported at the time; nothing for a file, or where it was not kept.
 std::optional<Trajectory> liveTrajectory(const std::string& estimate) {
   const fs::path file = fs::path(estimate) / "trajectory_live.txt";
   if (!fs::exists(file)) return std::nullopt;

@@ -61,7 +61,7 @@ std::map<std::int64_t, Eigen::Isometry3d> truthOf(const Trajectory& truth,
   return poses;
 }
 
-/// Fills in what a frame's true view tells.
+/// Fills in what a frame's true view shows.
 class Judge {
  public:
   explicit Judge(const SurfelMap& map) : map_(map), overlap_(map), verifier_(TrackingConfig{}) {}
@@ -115,9 +115,9 @@ nlohmann::ordered_json toJson(const FallReturn& fall, std::int64_t start_ns) {
       {"worst_from_truth_m", fall.worst_from_truth_m}};
 }
 
-/// From the truth to the map, as the frames tell it that were located before the fall: a map is
-/// bent by some centimetres from end to end, and a camera is where it is among the things around
-/// it. They must agree with the map as a whole, or else it tells (`by_map`).
+/// From the truth to the map, by the frames located before the fall: a map is bent by some
+/// centimetres from end to end, and a camera is located among the things around it. They must agree
+/// with the map as a whole, otherwise that decides (`by_map`).
 Eigen::Isometry3d mapFromTruth(const Trajectory& truth, const std::vector<StatusRow>& rows,
                                std::int64_t fall_ns, const Eigen::Isometry3d& by_map) {
   Trajectory before;
@@ -210,6 +210,6 @@ int main(int argc, char** argv) {
   app.addOption("--map", options.map, "map file (*.pfdb) of the run")->required();
   app.addOption("--map-sequence", options.map_sequence,
                 "TUM folder that the map was made of; default: the run made it");
-  app.addFlag("--each", options.each, "tell of each frame since the first fall, on stderr");
+  app.addFlag("--each", options.each, "report each frame since the first fall, on stderr");
   return pf::runTool(app, argc, argv, [&] { return pf::fallCheck(options); });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // posefusion_feeder: plays a recording into the chain, lossless or in real time, and ends when the
-// last frame has been reported. Tells what became of the frames, and how long transforms took.
+// last frame has been reported. Reports what became of the frames, and how long transforms took.
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 #include <tf2_msgs/TFMessage.h>
@@ -98,8 +98,8 @@ class Feeder {
                                       std::chrono::duration_cast<steady_clock::duration>(due));
       }
       send(next->frame);
-      const std::string told = progress.after(static_cast<std::size_t>(sent_), steady_clock::now());
-      if (!told.empty()) ROS_INFO("%s", told.c_str());
+      const std::string line = progress.after(static_cast<std::size_t>(sent_), steady_clock::now());
+      if (!line.empty()) ROS_INFO("%s", line.c_str());
     }
     const double patience_s = settings_.lossless ? settings_.timeout_s : kQuiet_s;
     if (!waitBelow(1, patience_s) && settings_.lossless) fail();

@@ -68,7 +68,7 @@ TriangleMesh painted(const pcl::PolygonMesh& polygons, const SurfelArrays& surfe
   std::vector<Vector3f> centres;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const Vector3f p(surfels.x[i], surfels.y[i], surfels.z[i]);
-    centres.push_back(p.allFinite() ? p : Vector3f::Constant(9000));  // nobody is there
+    centres.push_back(p.allFinite() ? p : Vector3f::Constant(9000));  // far from all others
   }
   const PointGrid grid(centres);
   TriangleMesh mesh;

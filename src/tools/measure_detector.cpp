@@ -150,8 +150,9 @@ void measureAll(const Options& options) {
 
 int main(int argc, char** argv) {
   CommandLine app{
-      "Counts the simulated people with head and torso in view, 1 to 4 m away, of whom a detector\n"
-      "finds 4 joints or more, the empty frames in which it finds somebody, and its time a frame.",
+      "Counts the simulated people with head and torso in view, 1 to 4 m away, of which a\n"
+      "detector finds 4 joints or more, the empty frames in which it finds a person, and its\n"
+      "time a frame.",
       "posefusion_measure_detector"};
   Options o;
   o.config.every_nth_frame = 1;

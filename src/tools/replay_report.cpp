@@ -58,7 +58,7 @@ void ReplayReport::sent(const pf::RgbdFrame& frame) {
   const std::lock_guard<std::mutex> lock(mutex_);
   pf::ProcessedFrame& whole = under_way_[frame.stamp_ns].whole;
   whole.seen.frame = frame;
-  // No message tells them.
+  // No message holds them.
   whole.seen.gate_ms = whole.seen.pose_ms = whole.segmentation_ms =
       std::numeric_limits<double>::quiet_NaN();
   if (under_way_.size() > kMostUnderWay) take(true);

@@ -120,7 +120,7 @@ std::exception_ptr process(const RunOptions& options, FrameSource& source, Pipel
   return failure;
 }
 
-/// Throws where the run has told nothing of the camera.
+/// Throws where the run has no pose of the camera.
 void requirePoses(const RunOptions& options, const RunReport& report) {
   if (!report.trajectory().empty()) return;
   const FrameCounts& frames = report.statistics().frames();

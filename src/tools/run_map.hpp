@@ -25,7 +25,7 @@ class RunMap {
   /// `folder`: of the run. Throws InputError naming the file.
   RunMap(const RunOptions& options, const std::string& folder, const Mapper& mapper);
 
-  /// After each frame. Tells what could not be written.
+  /// After each frame. Returns what could not be written.
   std::string add(const ProcessedFrame& frame);
 
   /// Throws InputError naming the file.

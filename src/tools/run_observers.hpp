@@ -63,7 +63,7 @@ class RunObservers {
   RunObservers(const RunOptions& options, const std::string& folder, const SurfelMap& map);
 
   void add(const ProcessedFrame& frame);
-  /// Writes the files and tells the report what was found.
+  /// Writes the files and adds what was found to the report.
   void finish(RunReport& report);
 
  private:

@@ -32,7 +32,7 @@ constexpr char kTransforms[] = "/tf";
 constexpr char kOdomFrame[] = "odom";
 constexpr char kBaseFrame[] = "base_link";
 constexpr char kImuFrame[] = "imu_link";
-// Of roll and pitch, which gravity tells, and of what is not walked.
+// Of roll and pitch, which gravity gives, and of what is not walked.
 constexpr double kTilt_rad2 = 1e-5;
 constexpr double kStill_m2 = 1e-8, kStill_rad2 = 1e-8;
 

@@ -23,10 +23,10 @@ struct TrackErrors {
 /// Throws InputError for fewer than three poses with a true one.
 TrackErrors trackErrors(const Trajectory& truth, const Trajectory& estimate, bool with_scale);
 
-/// What posefusion_evaluate tells of a run or a trajectory.
+/// What posefusion_evaluate reports of a run or a trajectory.
 struct TrackAnswer {
   TrackErrors errors;               ///< of the trajectory itself: of a run, as corrected by loops
-  std::optional<TrackErrors> live;  ///< of a run: as told at the time
+  std::optional<TrackErrors> live;  ///< of a run: as reported at the time
   std::optional<PoseCoverage> coverage;  ///< where the frames of the sequence are known
   std::optional<ErrorStatistics> held_m;
   std::optional<std::size_t> gated;  ///< frames that the run's blur gate dropped

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For the bench: loops that are wrong, told while a recording is mapped. Five between two stretches
-// of the way, all off by one motion, so that they agree with each other: what is left of them in
-// the graph in the end, and what they cost.
+// For the bench: wrong loops, reported while a recording is mapped. Five between two stretches of
+// the way, all off by one motion, so that they agree with each other: what is left of them in the
+// graph in the end, and what they cost.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -117,8 +117,9 @@ int tellWrongLoops(const Options& options) {
 }  // namespace pf
 
 int main(int argc, char** argv) {
-  pf::CommandLine app{"Tells wrong loops while a recording is mapped, and what becomes of them.",
-                      "posefusion_wrong_loops"};
+  pf::CommandLine app{
+      "Reports wrong loops while a recording is mapped, and shows what becomes of them.",
+      "posefusion_wrong_loops"};
   pf::Options options;
   app.addOption("sequence", options.sequence, "TUM folder or bag")->required();
   app.addOption("--truth", options.truth, "trajectory; default: that of the folder");

@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kHalfView_rad = 0.39F;  // of rviz's orbit view, upwards and downwards
 constexpr float kMargin = 1.05F;
-constexpr std::size_t kSample = 50000;  // surfels that room and floor are told from
+constexpr std::size_t kSample = 50000;  // surfels that room and floor are estimated from
 
 /// Evenly many are left out; the others grow, so that no holes open.
 std::vector<SurfelPoint> thinned(const sensor_msgs::PointCloud2& cloud, std::size_t most) {

@@ -116,7 +116,7 @@ class Viewer {
     return std::chrono::duration<double>(steady_clock::now() - begin).count();
   }
 
-  /// What the display says of the cloud.
+  /// The status text of the cloud in the display.
   QString told() const {
     for (int i = 0; i < display_->numChildren(); ++i) {
       const rviz::Property* child = display_->childAt(i);

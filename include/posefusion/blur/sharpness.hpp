@@ -9,7 +9,7 @@ namespace pf {
 struct Sharpness {
   double laplacian_variance = 0.0;  ///< see scoreBlur()
   double fine_detail = 0.0;  ///< energy of fine detail for each unit of coarse detail; 0 where dull
-  bool dull = false;         ///< no coarse detail above the noise: blur cannot be told
+  bool dull = false;         ///< no coarse detail above the noise: blur cannot be measured
 };
 
 /// Variance of the response of the 3x3 Laplacian on the grey image, grey levels squared (PFH paper,

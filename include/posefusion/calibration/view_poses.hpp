@@ -9,9 +9,9 @@
 
 namespace pf {
 
-/// Where the views of many pairs are. Pairs alone say it, not the map, whose poses were found with
-/// depth that is off by the field. A round that pairs close teaches the field what no pair can tell
-/// from its own pose: steps that all turn a little too far do not add up to a whole turn.
+/// Poses of the views of many pairs, from the pairs alone and not from the map, whose poses were
+/// found with depth that is off by the field. A circle of pairs teaches the field what no single
+/// pair can show: steps that all turn a little too far do not add up to a whole turn.
 class ViewPoses {
  public:
   /// Starts where the map has them.

@@ -11,7 +11,7 @@
 
 namespace pf {
 
-/// What a keyframe tells about the depth camera.
+/// Measurements of a keyframe on the depth camera.
 struct CalibrationView {
   int id = -1;           ///< of the keyframe; no two views have the same
   PinholeCamera camera;  ///< of the depth image, without lens distortion

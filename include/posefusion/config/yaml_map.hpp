@@ -46,7 +46,7 @@ class YamlMap {
   YamlMap map(const std::string& key);  ///< a missing one is empty
   std::vector<YamlMap> maps(const std::string& key);
 
-  /// Keys that nobody asked for.
+  /// Keys that were never read.
   std::vector<std::string> unread() const;
   /// Throws where there are any.
   void finish() const;

@@ -44,7 +44,7 @@ struct ProvisionalShare {
   double median_sigma_m = 0;        ///< reported: the largest of the three axes
 };
 
-/// `known`: poses that are not provisional, which tell how the map lies in the truth.
+/// `known`: poses that are not provisional, which give the pose of the map in the truth.
 ProvisionalShare checkProvisional(const Trajectory& truth, const Trajectory& known,
                                   const std::vector<UncertainPose>& provisional);
 

@@ -12,7 +12,7 @@
 namespace pf {
 
 /// What the frames of a recording that were located have truly seen, by their true poses: whatever
-/// the map made of it. Tells whether a lost camera sees a place that it should know.
+/// the map made of it. Decides whether a lost camera sees a place that it should know.
 class KnownWorld {
  public:
   /// A view of less than so much with depth, people left out, is covered.

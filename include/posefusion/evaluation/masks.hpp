@@ -25,7 +25,7 @@ cv::Mat foundParts(const cv::Mat& truth, const cv::Mat& depth_m, const People& p
 class MaskCheck {
  public:
   void add(const cv::Mat& truth, const cv::Mat& mask);
-  /// Only for frames that the detector looked at. Pixels of people who were not found do not count.
+  /// Only for frames that the detector looked at. Pixels of undetected people do not count.
   void addFound(const cv::Mat& truth, const cv::Mat& mask, const cv::Mat& found);
 
   /// Frames in which people cover more than 2 %.

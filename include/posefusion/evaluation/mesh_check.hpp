@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// Points on a mesh that are at most about 1 cm apart, with the area (m^2) that each stands for.
+/// Points on a mesh that are at most about 1 cm apart, with the area (m^2) that each represents.
 struct MeshSamples {
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<float> area_m2;

@@ -39,9 +39,9 @@ class PlaceWatch {
   /// How many points the map knew when watching began (left), or were seen by now (taken).
   std::size_t known() const;
   /// Since when so much of the place was seen empty (left: half of what was known) or taken (15 %
-  /// of the points, 30 or more) that the map could tell.
+  /// of the points, 30 or more) that the map could show it.
   std::optional<std::int64_t> seenAt() const { return seen_ns_; }
-  /// When the map told: a tenth or less of what was known is left, or half of what was seen is
+  /// When the map showed it: a tenth or less of what was known is left, or half of what was seen is
   /// there. Not before seenAt().
   std::optional<std::int64_t> toldAt() const { return told_ns_; }
   /// Of the time from seenAt() to toldAt(), or to the last frame, how long the place was in view

@@ -54,8 +54,8 @@ struct PoseErrors {
 PoseErrors absolutePoseErrors(const std::vector<PosePair>& pairs, const Alignment& alignment);
 
 /// Of the motions between pairs: of Q^-1 P, where Q is the true and P the estimated motion. Metres
-/// are told by the estimate; motions of seconds end at the pose nearest to that time, as in TUM's
-/// tool, and none at the last. Throws InputError for a step that is none.
+/// are measured along the estimate; motions of seconds end at the pose nearest to that time, as in
+/// TUM's tool, and none at the last. Throws InputError for a step that is none.
 PoseErrors relativePoseErrors(const std::vector<PosePair>& pairs, const Alignment& alignment,
                               const Step& step);
 

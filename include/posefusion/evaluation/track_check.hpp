@@ -37,9 +37,9 @@ constexpr double kWrongAngle_deg = 5.0;
 /// are left out.
 std::vector<std::size_t> wrongPoses(const Trajectory& truth, const Trajectory& estimate);
 
-/// How far the poses are from the truth for one who knows only where the camera began: the frames
-/// are brought together by alignPoses() over the poses of the first second that has any, never by a
-/// fit to what comes later.
+/// How far the poses are from the truth if only the start of the camera is known: the frames are
+/// brought together by alignPoses() over the poses of the first second that has any, never by a fit
+/// to what comes later.
 struct PlaceErrors {
   ErrorStatistics distance_m;   ///< of the poses that have a true one
   double worst_deg = 0;         ///< the largest angle between the two

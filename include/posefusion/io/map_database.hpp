@@ -54,10 +54,10 @@ struct MapUpdate : MapContent {
   std::vector<KeyframeImages> images;
 };
 
-/// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). Nobody else can open
-/// it meanwhile. A process that dies leaves what the last whole write() brought, in the file and
-/// the log beside it (`*.pfdb-wal`); without the log, what the write() before brought. Not thread
-/// safe, but may be used from any one thread.
+/// Writes a map file, `*.pfdb`: one SQLite database (docs/algorithm-graph.md). No other process can
+/// open it meanwhile. A process that dies leaves what the last whole write() brought, in the file
+/// and the log beside it (`*.pfdb-wal`); without the log, what the write() before brought. Not
+/// thread safe, but may be used from any one thread.
 class MapWriter {
  public:
   enum class Mode {

@@ -16,8 +16,8 @@ namespace pf {
 /// with it.
 SavedMap readSavedMap(const std::string& path);
 
-/// Where a map stands in the frame of those who use it (Mapper::placed()). Throws InputError where
-/// what the file says cannot be.
+/// The pose of a map in the user's frame (Mapper::placed()). Throws InputError where the file's
+/// pose is impossible.
 std::optional<Eigen::Isometry3d> placeOf(const MapContent& content);
 
 /// That the depth of a map was corrected by. Throws InputError where what the file says cannot be.
@@ -47,11 +47,11 @@ class MapRecording {
   MapRecording(const std::string& path, MapWriter::Mode mode, std::string settings,
                const Mapper& mapper);
 
-  /// After a frame of the mapper; `camera`: of the frame, rectified. Tells what was wrong with the
-  /// last write (empty: nothing): it is tried again with the next.
+  /// After a frame of the mapper; `camera`: of the frame, rectified. Returns what was wrong with
+  /// the last write (empty: nothing), which is tried again with the next.
   std::string update(const PinholeCamera& camera, const Mapper& mapper);
 
-  /// Writes the rest; update() may go on. Tells whether there is a map at all. Throws InputError
+  /// Writes the rest; update() may go on. Returns whether there is a map at all. Throws InputError
   /// naming the file.
   bool finish(const Mapper& mapper);
 

@@ -10,7 +10,7 @@ namespace pf {
 
 /// How other systems and benchmarks write trajectories.
 enum class TrajectoryFormat {
-  automatic,  ///< told by the first line that is no comment
+  automatic,  ///< recognised by the first line that is no comment
   tum,        ///< stamp (s) tx ty tz qx qy qz qw
   kitti,      ///< the upper three rows of the pose's matrix, row by row; no stamps
   euroc       ///< stamp (ns), tx, ty, tz, qw, qx, qy, qz; further columns are left out

@@ -5,7 +5,7 @@
 
 namespace pf {
 
-/// Settings of what the robot's other sensors tell of the camera's motion. Errors are standard
+/// Settings of the camera's motion measured by the robot's other sensors. Errors are standard
 /// deviations to begin with: they grow by what the images show of them.
 struct RobotConfig {
   double odometry_per_m = 0.03;
@@ -38,9 +38,9 @@ inline void visitFields(RobotConfig& c, FieldVisitor& v) {
   v.number("imu_max_gap_s", c.imu_max_gap_s, 0.001, 1.0,
            "longest time between two samples that is bridged");
   v.number("free_fall_m_s2", c.free_fall_m_s2, 0.0, 9.0,
-           "less acceleration than this: the robot falls, and its legs do not tell of its motion");
+           "less acceleration than this: the robot falls, and its legs do not measure its motion");
   v.number("impact_m_s2", c.impact_m_s2, 12.0, 1000.0, "more than this: it hits something");
-  v.number("after_fall_s", c.after_fall_s, 0.0, 60.0, "for so long its legs tell nothing");
+  v.number("after_fall_s", c.after_fall_s, 0.0, 60.0, "for this long its legs are not used");
 }
 
 }  // namespace pf

@@ -19,7 +19,7 @@ struct ImuSample {
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  ///< at rest 9.81 upwards
 };
 
-/// What an inertial sensor told in the last ten seconds. Not thread safe.
+/// Samples of an inertial sensor of the last ten seconds. Not thread safe.
 class ImuTrack {
  public:
   explicit ImuTrack(const RobotConfig& config) : config_(config) {}
@@ -36,7 +36,7 @@ class ImuTrack {
   /// Nothing without samples, and in a fall.
   std::optional<Eigen::Vector3d> feltBetween(std::int64_t from_ns, std::int64_t to_ns) const;
 
-  /// The images tell that it was this turn: the bias follows, within seconds at first and slowly
+  /// The images have measured this turn: the bias follows, within seconds at first and slowly
   /// later.
   void learnBias(std::int64_t from_ns, std::int64_t to_ns, const Eigen::Matrix3d& R_before_after);
 

@@ -18,7 +18,7 @@ struct MotionPrior {
 /// some time into the same direction: what it may do where nothing measures it.
 constexpr double kRobotSpeed_m_s = 0.6, kRobotTurn_rad_s = 1.2;
 
-/// What two independent sources tell together. Nothing where they contradict each other: by a
+/// Combines the motions of two independent sources. Nothing where they contradict each other: by a
 /// chi-square of 22.46 (1 in 1000 by chance).
 std::optional<MotionPrior> combined(const MotionPrior& a, const MotionPrior& b);
 

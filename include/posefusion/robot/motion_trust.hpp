@@ -21,7 +21,7 @@ class MotionTrust {
   /// Its motions with the errors that they have shown.
   MotionPrior honest(MotionPrior told) const;
 
-  /// What it tells from now on has to be shown anew.
+  /// From now on the sensor has to earn trust anew.
   void doubt();
 
  private:

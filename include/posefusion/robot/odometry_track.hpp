@@ -12,7 +12,7 @@
 namespace pf {
 
 /// The camera's poses by the robot's odometry (legs, wheels), of the last ten seconds. They drift;
-/// only motions between them are told. Not thread safe.
+/// only motions between them are reported. Not thread safe.
 class OdometryTrack {
  public:
   explicit OdometryTrack(const RobotConfig& config) : config_(config) {}

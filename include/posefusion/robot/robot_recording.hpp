@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// What a robot's other sensors told beside a recording, each in the order of its stamps.
+/// Measurements of a robot's other sensors beside a recording, each in the order of its stamps.
 struct RobotRecording {
   Trajectory odometry;  ///< of the camera, in the frame of the odometry
   std::vector<ImuSample> imu;

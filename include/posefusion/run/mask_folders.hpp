@@ -11,7 +11,7 @@ namespace pf {
 
 /// Checks the masks of a run (`mask_folder`: its output folder, or the folder of <stamp>.png files)
 /// against a sequence (`truth_folder`: with mask/, or a folder of <stamp>.png files, or a sequence
-/// without mask/: then nobody is in it). The found people are told from people.json beside the
+/// without mask/: then no person is in it). The detected people come from people.json beside the
 /// masks and the sequence's depth, where both exist. Throws InputError naming what is missing.
 MaskCheck checkMasks(const std::string& truth_folder, const std::string& mask_folder);
 

@@ -9,7 +9,7 @@
 
 namespace pf {
 
-/// Called for each frame in order. `defect` tells why a frame could not be read (its outcome is
+/// Called for each frame in order. `defect` says why a frame could not be read (its outcome is
 /// bad_input then). Return false to stop.
 using FrameDone = std::function<bool(const ProcessedFrame& frame, const std::string& defect)>;
 

@@ -25,7 +25,7 @@ struct RunErrors {
   std::size_t false_count = 0;  ///< of placeErrors()
 };
 
-/// Of the poses as told at the time: what a robot acted on.
+/// Errors of the poses as reported at the time: what a robot acted on.
 struct LiveErrors {
   ErrorStatistics ate_m;
   std::size_t wrong = 0;
@@ -60,8 +60,8 @@ class RunReport {
   void setCorrected(const Trajectory& trajectory);
 
   const RunStatistics& statistics() const { return statistics_; }
-  /// The frames that have a pose of their own, as they were told at the time; as corrected by loops
-  /// after setBackEnd().
+  /// The frames that have a pose of their own, as they were reported at the time; as corrected by
+  /// loops after setBackEnd().
   const Trajectory& trajectory() const { return trajectory_; }
   double framesPerSecond() const;
   /// Nothing without truth, or when fewer than three poses have a true one.
@@ -70,7 +70,7 @@ class RunReport {
   std::optional<LiveErrors> liveErrors() const;
 
   /// trajectory.txt (TUM format, camera poses of the frames that have one, corrected by loops) and
-  /// trajectory_live.txt (as they were told at the time), in the frame that `T_world_map` leads to.
+  /// trajectory_live.txt (as reported at the time), in the frame that `T_world_map` leads to.
   /// Throws InputError naming the file.
   void writeTrajectories(const std::string& folder,
                          const Eigen::Isometry3d& T_world_map = bodyFromOptical()) const;
@@ -93,7 +93,7 @@ class RunReport {
   RunStatistics statistics_;
   std::vector<std::int64_t> frames_ns_;  // of all frames that could be read
   Trajectory trajectory_;
-  Trajectory live_;  ///< as told at the time
+  Trajectory live_;  ///< as reported at the time
   Trajectory truth_;
   LoopCounts loops_;
   BackEnd::Counts corrections_;

@@ -18,7 +18,7 @@ struct FrameCounts {
   std::size_t blurred = 0;   ///< dropped by the gate
   std::size_t tracked = 0;   ///< tracked and, unless too blurred for it, fused
   std::size_t lost = 0;      ///< offered to tracking, and not believed
-  std::size_t left_out = 0;  ///< nobody looked at them: live, the chain fell behind
+  std::size_t left_out = 0;  ///< never processed: live, the chain fell behind
   std::size_t posed = 0;     ///< located: tracked, or doubtful with a pose of their own
   std::map<std::string, std::size_t> by_state, by_outcome;  ///< of all that were read, by name
 
@@ -59,7 +59,7 @@ class RunStatistics {
 
   /// By stage: gate, pose (frames that the detector looked at), segmentation, tracking, fusion,
   /// tracking_and_fusion, their sum, loop_closing (what loops cost the tracking thread),
-  /// loop_waiting (for answers), and what addTime() was told.
+  /// loop_waiting (for answers), and what addTime() added.
   std::map<std::string, StageTime> stages() const;
 
   /// Times that the chain took for a frame, with what loops cost its thread, in each minute of the

@@ -24,7 +24,7 @@ void main() {
   vec3 n = normal();
   vec3 ray = normalize(eye - at);
   gl_Position = projected * vec4(at, 1.0);
-  // Colours have the light of the room; this tells the shape.
+  // Colours have the light of the room; this shading shows the shape.
   color = paint.rgb * (0.72 + 0.28 * abs(dot(n, ray)));
   // As seen along the ray: to the right, to the top, towards the eye.
   vec3 right = normalize(cross(vec3(view[0][1], view[1][1], view[2][1]), ray));

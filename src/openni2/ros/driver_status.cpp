@@ -32,12 +32,12 @@ void reportStreaming(const DriverStatus& status, diagnostic_updater::DiagnosticS
   out.add("depth registered to colour", status.registered);
   out.add("streams synchronised", status.synchronised);
   out.add("exposure",
-          status.exposure ? std::to_string(*status.exposure) : "not told by the device");
+          status.exposure ? std::to_string(*status.exposure) : "not reported by the device");
   if (status.exposure_limited) out.add("auto exposure", "held at max_exposure");
   if (status.temperature_c) {
     out.addf("temperature (C)", "%.1f", *status.temperature_c);
   } else {
-    out.add("temperature (C)", "not told by the device");
+    out.add("temperature (C)", "not reported by the device");
   }
   out.add("recording", status.recording.empty() ? "none" : status.recording);
 }

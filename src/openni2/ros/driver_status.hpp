@@ -18,7 +18,7 @@ struct StreamStatus {
   double latency_ms = 0.0;  ///< from the driver's callback to the published pointer, median
 };
 
-/// What diagnostics tell of the driver.
+/// What diagnostics report of the driver.
 struct DriverStatus {
   enum class State { looking, streaming, ended };
 
