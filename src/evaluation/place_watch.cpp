@@ -122,8 +122,8 @@ void PlaceWatch::add(const MappedView& view) {
   findSurfels(view);
   if (!seen_ns_ && isSeen()) seen_ns_ = view.stamp_ns;
   if (!seen_ns_) return;
-  const bool told = kind_ == Kind::left ? mapped() <= kForgotten : mapped() >= kMapped;
-  if (told) told_ns_ = view.stamp_ns;
+  const bool shown = kind_ == Kind::left ? mapped() <= kForgotten : mapped() >= kMapped;
+  if (shown) told_ns_ = view.stamp_ns;
 }
 
 }  // namespace pf

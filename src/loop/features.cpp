@@ -175,7 +175,7 @@ Features featuresFromBytes(const std::string& bytes) {
   in.expect(kMagic, kVersion);
   const auto count = in.get<std::uint32_t>();
   constexpr std::size_t kEach = 3 * sizeof(float) + Features::kDescriptor;
-  if (in.left() != count * kEach) in.fail("has not the size that it tells");
+  if (in.left() != count * kEach) in.fail("has not the size that it states");
   Features features;
   features.descriptors.create(static_cast<int>(count), Features::kDescriptor, CV_8UC1);
   for (std::uint32_t i = 0; i < count; ++i) {

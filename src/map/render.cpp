@@ -82,7 +82,7 @@ struct Candidate {
   float depth;
 };
 
-/// Is a disc of the surface that a pixel shows, as far as `nearest` tells it?
+/// Is a disc of the surface that a pixel shows, as far as `nearest` shows it?
 inline bool isOfNearest(const DepthSensor& sensor, std::uint64_t nearest, bool stable,
                         float depth) {
   const float front = valueOf(nearest);

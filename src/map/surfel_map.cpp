@@ -13,7 +13,7 @@ namespace {
 // in vain, and no single step moves much.
 constexpr std::size_t kChunk = 128;
 constexpr std::size_t kGrowthShare = 8;
-// What an integer can count; at any sensible side farther than floats tell one block from the next.
+// What an integer can count; at any sensible side farther than floats resolve blocks.
 constexpr float kCellLimit = 1e9F;
 
 std::int32_t cellOf(float x, float side) {

@@ -63,10 +63,11 @@ MappingSession::MappingSession(const MappingSettings& settings,
   use_ = settings.localize_only ? MapUse::localize_only : MapUse::extend;
   pf::SavedMap saved = pf::readSavedMap(settings.map_file);
   camera_ = saved.camera;
-  const bool tells = saved.calibration.has_value();
+  const bool has_calibration = saved.calibration.has_value();
   mapper_ = begunIn(std::move(saved), settings.map_file, use_, known);
   map_file_ = realPath(settings.map_file);
-  if (tells || known) noteCorrection(tells ? map_file_ : settings.calibration_file);
+  if (has_calibration || known)
+    noteCorrection(has_calibration ? map_file_ : settings.calibration_file);
   if (settings.continue_map) saver_.continueIn(map_file_, toSave());
 }
 
@@ -128,7 +129,7 @@ std::string MappingSession::load(const std::string& file, pf::SavedMap map) {
     if (!defect.empty()) throw InputError(defect);
   }
   const pf::PinholeCamera camera = map.camera;
-  const bool tells = map.calibration.has_value();
+  const bool has_calibration = map.calibration.has_value();
   auto loaded = begunIn(std::move(map), file, use_, mapper_->calibration());
   const std::string real_file = realPath(file);  // `latest` will lead elsewhere
   std::string said = saver_.beginAnew(toSave(), real_file);
@@ -136,7 +137,7 @@ std::string MappingSession::load(const std::string& file, pf::SavedMap map) {
   loops_.reset();
   map_file_ = real_file;
   is_continued_ = false;
-  if (tells) noteCorrection(map_file_);
+  if (has_calibration) noteCorrection(map_file_);
   camera_ = camera;
   return said + (said.empty() ? "" : "; ") + "the map is that of " + file + ", with " +
          std::to_string(mapper_->map().size()) + " surfels; the camera is looked for in it";

@@ -30,7 +30,7 @@ constexpr float kOnPlane = -3.0F;
 constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
-constexpr float kHoleFactor = 0.5F;      // missing depth tells less ...
+constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
 constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
 
 /// What the map says of a cell, unless its candidate is known to be in the map by mistake.

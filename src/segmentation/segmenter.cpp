@@ -14,7 +14,8 @@ namespace pf {
 namespace {
 
 /// Reports `objects` (in uncorrected coordinates) where the pose of the map in the world is known.
-void tell(const ModelView& view, const std::vector<MovingObject>& objects, Segmentation& result) {
+void reportObjects(const ModelView& view, const std::vector<MovingObject>& objects,
+                   Segmentation& result) {
   if (view.fragment != kFirstFragment || !view.T_world_map) return;
   const Eigen::Isometry3d T_world_uncorrected = *view.T_world_map * view.T_map_uncorrected;
   for (const MovingObject& object : objects) {
@@ -67,7 +68,7 @@ void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
       s.objects.find({s.evidence.grid, frame.camera, *view, T_uncorrected_camera,
                       s.evidence.background, s.labels, frame.stamp_ns, s.worth});
   for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
-  tell(*view, objects, result);
+  reportObjects(*view, objects, result);
 }
 
 /// After keepPeople(): the cells are those of this frame's mask.
@@ -76,10 +77,10 @@ void PeopleSegmenter::placePeople(const ModelView* view,
                                   Segmentation& result) {
   State& s = *state_;
   if (view == nullptr || view->fragment != kFirstFragment) return s.people_in_map.reset();
-  tell(*view,
-       s.people_in_map.place(s.people, s.evidence.grid, T_uncorrected_camera,
-                             result.people.stamp_ns),
-       result);
+  reportObjects(*view,
+                s.people_in_map.place(s.people, s.evidence.grid, T_uncorrected_camera,
+                                      result.people.stamp_ns),
+                result);
 }
 
 Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMaskSamples = 30;         // points of each person's mask whose flow is measured
 constexpr float kMaxDeviation = 0.019F;  // of a joint's flow from its person's, in image widths
-// A carried joint that leaves the image still tells where the rest of its limb is; so far, in image
+// A carried joint that leaves the image still shows where the rest of its limb is; so far, in image
 // widths.
 constexpr float kReachOutside = 0.3F;
 constexpr int kMinJointsShare = 3;          // a detection continues a mask with 1/3 of its joints

@@ -80,7 +80,7 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
   const bool by_shape =
       !is_after_gap && strict.doubt == PlaceDoubt::other_picture && hasShape(strict.agreement);
   if (strict.accepted() || by_shape) return {};
-  char why[64] = "no corner tells of the motion";
+  char why[64] = "no corner measures the motion";
   if (is_after_gap) std::snprintf(why, sizeof why, "after %.1f s without a pose", blind_s);
   return {FrameOutcome::disagrees,
           std::string(why) + ", the map from there: " + std::string(name(strict.doubt))};

@@ -21,7 +21,7 @@ class MapMerger {
         border_(border),
         border_frame_(keyframe(border).map_frame) {}
 
-  /// Why the two do not become one; empty: they have. Tells how.
+  /// Merges the two and fills in `merged`. Returns why they cannot be merged; empty: they are.
   std::string merge(MergedMap& merged);
 
  private:

@@ -114,7 +114,7 @@ std::string CommandLine::help() const {
     if (group == groups.end()) group = groups.insert(group, {option->group_, {}});
     group->second.push_back({option->synopsis(), option->shownHelp()});
   }
-  groups.push_back({"Commands (--help after one tells more)", {}});
+  groups.push_back({"Commands (COMMAND --help: more)", {}});
   for (const auto& command : commands_) {
     groups.back().second.push_back({command->lastName(), command->about_});
   }

@@ -81,7 +81,7 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t
   std::printf("depth against the map   %.2f mm median over %zu frames (map covers %.1f %%)\n",
               1e3 * depth.medianM(), depth.frames(), 100 * depth.coverage());
   if (masked_frames == 0) {
-    std::printf("surfels on people       no true masks and poses to tell\n");
+    std::printf("surfels on people       no true masks and poses\n");
   } else {
     std::printf("surfels on people       %.2f %% (%zu of %zu; %zu frames with true masks)\n",
                 100 * people.part(), people.onPeople(), people.surfels(), masked_frames);

@@ -113,7 +113,7 @@ int runWithOptions(int argc, char** argv, const std::function<int(const RunOptio
       return 0;
     }
     if (options.input.empty()) {
-      throw InputError("INPUT is missing: a TUM folder or a bag (--help tells more)");
+      throw InputError("INPUT is missing: a TUM folder or a bag (see --help)");
     }
     if (!options.mesh_file.empty()) requireMeshFile(options.mesh_file);
     return run(options);

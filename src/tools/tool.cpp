@@ -28,7 +28,7 @@ int runTool(CommandLine& app, int argc, char** argv, const std::function<int()>&
     }
     return work();
   } catch (const CommandError& error) {
-    std::cerr << app.name() << ": " << error.what() << " (--help tells more)\n";
+    std::cerr << app.name() << ": " << error.what() << " (see --help)\n";
     return static_cast<int>(error.fault());
   } catch (const std::exception& error) {
     std::cerr << app.name() << ": " << error.what() << "\n";

@@ -65,7 +65,7 @@ class FernDatabase {
   std::vector<FernMatch> nearest(const FernCode& code, std::size_t most) const;
 
   /// Stores a keyframe when it is unlike all others (at least a tenth of its ferns must say
-  /// something). Tells whether it did.
+  /// something). Returns whether it did.
   bool harvest(std::int64_t id, const FernCode& code);
 
   /// Drops stored keyframes.

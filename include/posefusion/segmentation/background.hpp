@@ -31,7 +31,7 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
 
 /// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
 /// views that differ: a view may be older than the frame before (live, or where that was not
-/// fused). Two views of different fragments tell of no motion.
+/// fused). Two views of different fragments give no motion.
 class MotionPredictor {
  public:
   /// T_view_camera for the frame at `stamp_ns` given the newest view.

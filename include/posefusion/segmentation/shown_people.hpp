@@ -26,7 +26,7 @@ void sampleMask(const PersonMask& mask, const cv::Size& image, const SceneGrid& 
 
 /// Cost that a cell pays for being called background (> 0) or person (< 0) by what the mask says:
 /// limited log-odds. `is_shown`: the mask shows the person in question; where it does not, that it
-/// denies a cell tells little.
+/// denies a cell counts little.
 float shownTerm(const ShownPeople& shown, int cell, bool is_shown);
 
 /// The mask surely shows a person in the cell.

@@ -67,8 +67,8 @@ class LoopExchange {
   /// As of the last answer.
   const LoopCounts& counts() const { return counts_; }
 
-  /// Time that each keyframe took beside the mapper, candidates and verification of all its loops;
-  /// where the answers tell.
+  /// Time that each keyframe took beside the mapper, candidates and verification of all its loops,
+  /// of the answers that report it.
   const std::vector<double>& verificationMs() const { return verification_ms_; }
 
   /// Total time spent waiting for answers (ms); about 0 with AnswerTime::when_ready.
