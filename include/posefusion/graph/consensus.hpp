@@ -12,7 +12,7 @@ namespace pf {
 
 /// Which loops between two pieces of the map agree on the relative pose of the pieces.
 struct Consensus {
-  /// The most that agree with each other; first the one that most agree with.
+  /// The largest set of loops that agree with each other; first the one with which most agree.
   std::vector<PoseConstraint> agreeing;
   std::size_t independent = 0;  ///< of them: of other keyframes at other places, in both pieces
   std::size_t against = 0;  ///< the same of the rest, of the most that agree with each other there

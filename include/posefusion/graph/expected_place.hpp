@@ -10,7 +10,7 @@
 namespace pf {
 
 /// Where dead reckoning lets a camera be, for places that look like where it is: rooms look alike.
-/// What speaks for a place is not asked here, only whether the camera can have come there. Beside
+/// The evidence for a place is not judged here, only whether the camera can have come there. Beside
 /// the reckoning's own covariance that takes three errors: of the pose that it began at, the last
 /// before a loss; of the map, which has drifted between the keyframe of the beginning and the one
 /// at the place; and of the place itself. Immutable: for any thread.

@@ -36,9 +36,9 @@ struct GraphResult {
 struct ClosedLoops {
   std::vector<Deformation> deformations;  ///< what the map is to follow, in this order
   std::size_t accepted = 0;               ///< corrections
-  std::size_t refused = 0;                ///< loops that do not fit with the others
+  std::size_t refused = 0;                ///< loops inconsistent with the others
   std::size_t joined = 0;                 ///< fragments whose place was found
-  std::size_t withdrawn = 0;              ///< loops that held, and do not any more
+  std::size_t withdrawn = 0;              ///< loops accepted earlier, since rejected
 };
 
 /// Keyframes and what is measured between them. Loops wait until optimise() has proved them: either

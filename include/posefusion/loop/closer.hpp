@@ -14,7 +14,7 @@
 
 namespace pf {
 
-/// Two keyframes seen to be so far apart.
+/// A measured relative pose of two keyframes.
 struct LoopConstraint {
   std::int64_t from = 0, to = 0;  ///< keyframes
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
@@ -26,7 +26,7 @@ struct LoopConstraint {
   }
 };
 
-/// What became of it all, for the summary.
+/// Counts of loop closing and relocalisation, for the summary.
 struct LoopCounts {
   std::size_t keyframes = 0;
   std::size_t ferns = 0;       ///< keyframes whose ferns are stored
@@ -37,8 +37,8 @@ struct LoopCounts {
   std::array<std::size_t, kPlaceDoubts> refused{};  ///< by PlaceDoubt
   std::size_t one_way = 0;                          ///< refused: the two directions do not agree
   std::size_t turned = 0;                           ///< refused: the pictures look different ways
-  std::size_t searched = 0;  ///< frames of a lost camera that were looked for
-  std::size_t found = 0;     ///< of them
+  std::size_t searched = 0;  ///< frames of a lost camera that were searched for
+  std::size_t found = 0;     ///< of them: relocalised
 
   std::size_t allRefused() const;
 
@@ -57,11 +57,11 @@ class LoopCloser {
   /// Ids rise. Ferns are stored by their rules, the view in any case.
   void addKeyframe(const KeyframeView& view);
 
-  /// No loop leads to these keyframes any more, ascending; unknown ones count for nothing.
+  /// Closes no more loops to these keyframes (ascending); unknown ones are ignored.
   void forget(const std::vector<int>& ids);
 
   /// New poses after a correction: of keyframe i at place i. Throws InputError when there are fewer
-  /// than the last id wants.
+  /// than the last id requires.
   void setPoses(const std::vector<MapPose>& poses);
 
   /// Where in the map a picture may have been taken (camera poses, not verified): its features
@@ -99,7 +99,7 @@ class LoopCloser {
 
   std::vector<Candidate> candidates() const;
   static const Features& featuresOf(Keyframe& keyframe);
-  /// With the last keyframe, by the guess and, where that leads nowhere, by features.
+  /// Verifies it with the last keyframe, by the guess and, where that fails, by features.
   std::optional<LoopConstraint> verify(const Candidate& candidate);
   std::optional<LoopConstraint> verify(std::int64_t id, const Eigen::Isometry3d& T_from_to_guess);
 

@@ -30,13 +30,13 @@ struct FernConfig {
   double novelty = 0.3095;  ///< dissimilarity to all others from which a frame is stored
 };
 
-/// What each fern says of a picture: four bits (red, green, blue, depth above their thresholds), or
-/// kNoFern where nothing is known.
+/// The code of each fern in a picture: four bits (red, green, blue, depth above their thresholds),
+/// or kNoFern where nothing is known.
 struct FernCode {
   static constexpr std::uint8_t kNoFern = 255;
 
   std::vector<std::uint8_t> bits;
-  int good = 0;  ///< ferns that say something
+  int good = 0;  ///< ferns with a code
 };
 
 struct FernMatch {
@@ -46,7 +46,7 @@ struct FernMatch {
 
 /// Keyframes by randomised ferns: Glocker et al., "Real-time RGB-D camera relocalization via
 /// randomized ferns for keyframe encoding", TVCG 2015. Each fern looks at one pixel; pictures are
-/// compared by the ferns that say the same (block-wise Hamming distance). Lists of the keyframes of
+/// compared by the ferns with equal codes (block-wise Hamming distance). Lists of the keyframes of
 /// each fern and code make a search cost what agrees, not what is stored. The same seed gives the
 /// same ferns everywhere. Not thread safe.
 class FernDatabase {
@@ -56,16 +56,16 @@ class FernDatabase {
 
   FernCode encode(const Thumbnail& thumbnail) const;
 
-  /// 1 - (ferns that say the same) / (the smaller number of ferns that say something); 1 where one
-  /// of the two says nothing.
+  /// 1 - (ferns with equal codes) / (the smaller number of ferns with a code); 1 where one of the
+  /// two has none.
   static double dissimilarity(const FernCode& a, const FernCode& b);
 
   /// The stored keyframes that are most alike, best first (equal ones: the older first), at most
   /// `most`.
   std::vector<FernMatch> nearest(const FernCode& code, std::size_t most) const;
 
-  /// Stores a keyframe when it is unlike all others (at least a tenth of its ferns must say
-  /// something). Returns whether it did.
+  /// Stores a keyframe when it is unlike all others (at least a tenth of its ferns must have a
+  /// code). Returns whether it did.
   bool harvest(std::int64_t id, const FernCode& code);
 
   /// Drops stored keyframes.

@@ -19,9 +19,9 @@ struct KeyframeView {
   bool nobody_in_view = true;
 };
 
-/// Where two pictures look more than this different ways a surface is at different places in them,
-/// where the sensor is off differently: what joins them so is wrong by far more than its covariance
-/// says.
+/// Pictures whose directions differ by more than this see a surface at different image positions,
+/// where the errors of the sensor differ: a loop between them is wrong by far more than its
+/// covariance.
 constexpr double kMostTurn_rad = 0.26;
 
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,

@@ -20,8 +20,8 @@ struct LookedThrough {
 LookedThrough lookedThrough(const SurfelMap& map, const std::vector<KeyframeView>& views,
                             const DepthSensor& sensor);
 
-/// Finds where pictures of one map were taken in another one. What may be is said by the pose of
-/// the view, in the other map; what is, by verified() alone. Results are the same for any number of
+/// Finds where pictures of one map were taken in another one. The pose of a view in the other map
+/// is a hypothesis, which verified() alone confirms. Results are the same for any number of
 /// threads.
 class MapMatcher {
  public:

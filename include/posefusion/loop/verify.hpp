@@ -13,9 +13,9 @@
 
 namespace pf {
 
-/// Why a place is not believed.
+/// Why a place hypothesis is rejected.
 enum class PlaceDoubt {
-  none,            ///< believed
+  none,            ///< accepted
   covered,         ///< people or a hand leave too little of the view
   little_overlap,  ///< too little of the frame is in the map
   not_converged,   ///< the alignment did not settle
@@ -55,17 +55,17 @@ struct PlaceVerdict {
   MapPose pose() const { return {fragment, alignment.T_map_camera}; }
 };
 
-/// What is asked of a place that is believed.
+/// Limits that an accepted place must meet.
 struct VerifyLimits {
-  double min_view = 0.15;  ///< through a gap, a wall slides by as it likes
+  double min_view = 0.15;  ///< seen through a gap, a wall may slide freely
   double min_overlap = 0.25;
   double min_agreeing = 0.85;  ///< of what is not hidden
-  /// Enough where shape and picture say the same: a map that drift has bent agrees less.
+  /// Enough where shape and picture agree: a map that drift has bent agrees less.
   double min_agreeing_of_both = 0.75, shape_of_both = 0.1, correlation_of_both = 0.75;
   double max_hidden = 0.4;
   double max_seen_through = 0.1;
   double min_correlation = 0.68;
-  /// Enough where the shape alone says a lot: on real cameras colour and depth fit badly.
+  /// Enough where the shape alone is distinctive: on real cameras colour and depth fit badly.
   double min_correlation_of_shape = 0.3;
   double shape_overlap = 0.75, shape_spread = 0.05;
   double max_shift_m = 0.4, max_turn_rad = 0.35;
@@ -75,16 +75,16 @@ struct VerifyLimits {
 /// Compares a frame with the map drawn from its pose.
 PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view);
 
-/// Where an alignment starts that knows no more than a pose to begin with.
+/// The start of an alignment from nothing but a first pose.
 TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera);
 
 /// Standard deviation (m) of the camera's position in the direction that is known worst.
 double positionSigma(const Matrix6d& covariance);
 
-/// Whether the shape alone says where the frame is: much of it is in the map, and faces many ways.
+/// Whether the shape alone determines the pose: much of the frame is in the map, facing many ways.
 bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits = {});
 
-/// What speaks against an alignment that began at `T_map_candidate`.
+/// Why an alignment that began at `T_map_candidate` is rejected, if it is.
 PlaceDoubt judgePlace(const PlaceVerdict& verdict, const Eigen::Isometry3d& T_map_candidate,
                       const VerifyLimits& limits);
 
@@ -101,9 +101,9 @@ class PlaceVerifier {
 
   PlaceVerdict verify(const SurfelMap& map, const WorkingFrame& frame, const MapPose& candidate);
 
-  /// Verifies the first `most` candidates, best first. Of those believed the one that agrees best.
-  /// When they lead to different poses, or fragments, the one that dead reckoning expects, where it
-  /// is given and separates them; else `ambiguous`. Of none believed the verdict on the first.
+  /// Verifies the first `most` candidates, best first; of the accepted ones the best. When they
+  /// lead to different poses, or fragments, the one that dead reckoning expects, where it is given
+  /// and separates them; else `ambiguous`. With none accepted, the verdict on the first.
   PlaceVerdict verifyBest(const SurfelMap& map, const WorkingFrame& frame,
                           const std::vector<PlaceCandidate>& candidates, std::size_t most = 6,
                           const ExpectedPlace* expected = nullptr);

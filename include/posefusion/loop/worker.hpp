@@ -52,13 +52,13 @@ struct LoopQuestion {
   bool seeks_loops = true;
   /// How often the depth of the keyframes has been corrected by what was learned.
   int depth_version = 0;
-  /// That the depth of the keyframes is corrected by; none: it is as measured.
+  /// The correction of the keyframes' depth; none: it is as measured.
   std::optional<DepthCalibration> calibration{};
   /// Constraints between known keyframes that are to be measured anew, as their depth has changed.
   std::vector<PoseConstraint> remeasured{};
   bool calibrates = false;  ///< asked for: the camera's field is estimated now
 
-  /// Of a place and nothing else: it is answered before the questions that wait, from what is known
+  /// A question for a place alone, answered before the questions that wait, from what is known
   /// then.
   bool is_urgent = false;
 
@@ -69,26 +69,26 @@ struct LoopQuestion {
   }
 };
 
-/// What was found.
+/// The answer of the loop closer.
 struct LoopAnswer {
   std::vector<LoopConstraint> loops;   ///< of the keyframe
-  std::optional<PoseConstraint> step;  ///< of the question, as its pictures have it
+  std::optional<PoseConstraint> step;  ///< of the question, measured by its pictures
   /// Time to find and verify them all; 0 without a keyframe, or where it was not measured.
   double verification_ms = 0;
   bool asked_for_place = false;
-  std::optional<PlaceVerdict> place;  ///< where the lost frame is, when that is believed
+  std::optional<PlaceVerdict> place;  ///< of the lost frame, where it was found
   LoopCounts counts;                  ///< since the beginning
-  /// What the depth camera is off by, as it is now: worth correcting, where it is there.
+  /// The present error of the depth camera, where it is worth correcting.
   std::optional<DepthCalibration> calibration;
   int depth_version = 0;          ///< of the question
   std::string calibration_doubt;  ///< why an estimate is not worth it; empty: there is none
   std::vector<PoseConstraint> remeasured;  ///< those that the pictures still agree on
 };
 
-/// The loop closer's work, question by question: loops of keyframes, what the depth camera is off
-/// by, and a lost camera's place by drawing the map around the last pose before the loss
-/// (searchPlaces) and verifying the best candidates. The answers depend on the questions and their
-/// order alone. Not thread safe; may work beside the mapper.
+/// The loop closer's work, question by question: loops of keyframes, the error of the depth camera,
+/// and relocalisation by drawing the map around the last pose before the loss (searchPlaces) and
+/// verifying the best candidates. The answers depend on the questions and their order alone. Not
+/// thread safe; may work beside the mapper.
 class LoopWorker {
  public:
   LoopWorker(const LoopConfig& config, const TrackingConfig& tracking, const DepthSensor& sensor,

@@ -11,7 +11,7 @@
 
 namespace pf {
 
-/// What the map says of a cell.
+/// How a cell agrees with the map.
 enum class Background : std::uint8_t {
   unknown,  ///< the map has nothing there, or the cell has no depth
   agrees,   ///< the cell is a surface of the map

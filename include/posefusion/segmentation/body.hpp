@@ -22,8 +22,7 @@ struct Body {
   std::vector<Capsule> capsules;
   std::vector<int> seeds;    ///< cells that belong to the person for sure
   std::vector<int> shown;    ///< cells that the detector's mask shows for sure
-  std::vector<int> anchors;  ///< seeds, shown cells, and those of the carried mask that stand
-                             ///< before the map
+  std::vector<int> anchors;  ///< seeds, shown cells, and carried cells in front of the map
   float depth_m = 0.0F;      ///< median depth of the seeds, 0: no seed has depth
 };
 

@@ -37,7 +37,7 @@ constexpr float kDistanceLimit = 4.0F;
 /// The person that a cell could belong to, -1: none.
 int candidateOf(const Evidence& evidence, int cell);
 
-/// Part of a large plane and not known to stand before the map, or of a small one.
+/// Whether the cell is on a small plane, or on a large one and not known to be in front of the map.
 bool isFlat(const Evidence& evidence, int cell);
 
 /// Sum of the improved terms: distance to the skeletons in space, colour, agreement with the map,

@@ -10,23 +10,23 @@
 
 namespace pf {
 
-/// What is known of a frame when its moving objects are looked for.
+/// What is known of a frame before its moving objects are searched.
 struct MovingScene {
   const SceneGrid& grid;
   const PinholeCamera& camera;                    ///< of the frame
   const ModelView& view;                          ///< the map from the last trusted pose
   const Eigen::Isometry3d& T_uncorrected_camera;  ///< of the frame, as far as known
-  const std::vector<Background>& background;      ///< what the map says of the cells
+  const std::vector<Background>& background;      ///< how the cells agree with the map
   const std::vector<std::uint8_t>& is_person;     ///< cells that are taken out anyway
   std::int64_t stamp_ns;
   float worth;  ///< of the frame, see Pace
 };
 
-/// Finds what moves by what contradicts the map and the frames of the last second: pieces of depth
-/// that stand before the map in places which were empty a moment ago. Each is followed, and the
-/// odds that it moves are added up (a sequential test, Wald 1945): what rests for a while is of the
-/// static world again. After the idea of StaticFusion (Scona et al. 2018) and of Co-Fusion (Ruenz
-/// and Agapito 2017). Not thread safe.
+/// Finds moving objects where depth contradicts the map and the frames of the last second: pieces
+/// in front of the map in places that were empty a moment ago. Each is tracked, and the odds that
+/// it moves are added up (a sequential test, Wald 1945): an object at rest for a while becomes
+/// static again. After the idea of StaticFusion (Scona et al. 2018) and of Co-Fusion (Ruenz and
+/// Agapito 2017). Not thread safe.
 class MovingObjects {
  public:
   explicit MovingObjects(const DepthSensor& sensor);
@@ -39,7 +39,7 @@ class MovingObjects {
   /// 1 = a cell of an object that moves, as of the last find().
   const std::vector<std::uint8_t>& labels() const { return labels_; }
 
-  /// Nothing is known of the camera's place: what moved is forgotten.
+  /// The camera's place is unknown: all objects are forgotten.
   void reset();
 
  private:

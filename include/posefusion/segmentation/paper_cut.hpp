@@ -27,8 +27,8 @@ struct PaperTerms {
   float radius_m = 0.20F;
   int neighbours = 14;             ///< of each point, itself included (PCL's default)
   float foreground_weight = 0.8F;  ///< paid by a point called background (PCL's default)
-  Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the camera frame; the optical axis stands
-                                                  ///< for it where gravity is not known
+  Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the camera frame; replaced by the optical
+                                                  ///< axis where gravity is not known
 };
 
 /// The segmentation of the paper (III-B) as pcl::MinCutSegmentation does it (Golovinskiy and

@@ -13,12 +13,12 @@
 
 namespace pf {
 
-/// The depth of some frames of the last second, as grids: whether the place of what is seen now was
-/// empty then. Unlike the map it also knows space with nothing behind that was mapped, and what it
-/// says is of a certain moment. Not thread safe.
+/// Depth grids of some frames of the last second, which show whether a place seen now was empty
+/// then. Unlike the map they also know free space with nothing mapped behind it, and each is of one
+/// moment. Not thread safe.
 class SeenBefore {
  public:
-  /// The moments that are asked, so long ago: what is fast shows soon, what is slow later.
+  /// Ages of the moments compared: fast motion shows soon, slow motion later.
   static constexpr std::array<double, 3> kAges_s = {0.2, 0.5, 1.0};
 
   /// Takes in a frame's grid. `camera`: of the frame. know() gives its pose later.
@@ -29,7 +29,7 @@ class SeenBefore {
 
   /// What each moment shows of the cells of a frame at `stamp_ns`, seen from T_uncorrected_camera:
   /// `nearer` = the place was seen to be empty, `agrees` = the same surface was there, `farther` =
-  /// something stood before it. Where there is no such moment all are unknown.
+  /// something was in front of it. Where there is no such moment all are unknown.
   void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,
                std::int64_t stamp_ns, const DepthSensor& sensor);
 

@@ -19,7 +19,7 @@ namespace pf {
 /// People farther away (m) are not searched for: depth cameras cannot separate them from a wall.
 constexpr double kFarthestPerson_m = 8.0;
 
-/// A frame without its people, and without what else moves.
+/// A frame without its people and other moving objects.
 struct Segmentation {
   cv::Mat mask;          ///< CV_8UC1, frame size, 255 = a person or a moving object; empty when
                          ///< there is none
@@ -35,8 +35,8 @@ struct Segmentation {
 };
 
 /// Finds the pixels of people: seeds from joints, min-cut over the organised points, carried
-/// forward between detections; and, where there is a map, of what else moves. Keeps the last mask
-/// and joints. Not thread safe.
+/// forward between detections; and, where there is a map, of other moving objects. Keeps the last
+/// mask and joints. Not thread safe.
 class PeopleSegmenter {
  public:
   /// Of depth as `sensor` measures it.
@@ -48,8 +48,7 @@ class PeopleSegmenter {
   /// carried. `background` is the map rendered at the last trusted pose, with the stamp of its
   /// frame: what agrees with it is no person. Null while there is no map or the camera is lost in
   /// it: nothing is known of the background then, and people are carried a third as long.
-  /// `up_camera` is the upward direction in the
-  /// camera frame when known (TF or configuration).
+  /// `up_camera` is the upward direction in the camera frame when known (TF or configuration).
   Segmentation segment(const RgbdFrame& frame, const FlowTracker& flow, const People& people,
                        const ModelView* background,
                        const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);

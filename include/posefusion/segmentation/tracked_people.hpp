@@ -18,7 +18,7 @@ struct TrackedPerson {
   bool fresh = false;   ///< detected in the newest frame
   int detection = -1;   ///< if so: its index there
   double unseen = 0.0;  ///< frames at 30 Hz since the last detection, weighted by what the map says
-  bool in_map = false;  ///< the map holds the person by mistake: what it says there is not used
+  bool in_map = false;  ///< the map holds the person by mistake and is not used there
   float depth_m = 0.0F;    ///< median depth in the last frame, 0 = not known yet
   std::vector<int> cells;  ///< the mask, as cells of the grid, moved to the newest frame
   ColorHistogram color;    ///< of the person; total() is 0 while nothing is known
@@ -37,9 +37,9 @@ void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people);
 
 /// Replaces carried people by the new detections that continue them; the other detections are added
-/// where `may_be_new` (one for each detection) allows it. A detection continues the
-/// carried person whose mask holds most of its joints, at least a third. Joints that the detector
-/// missed this time are kept from before. `worth`: of the frame, see Pace.
+/// where `may_be_new` (one for each detection) allows it. A detection continues the carried person
+/// whose mask holds most of its joints, at least a third. Joints that the detector missed this time
+/// are kept from before. `worth`: of the frame, see Pace.
 void mergeDetections(const People& detected, const std::vector<bool>& may_be_new,
                      const SceneGrid& grid, float worth, std::vector<TrackedPerson>& people);
 

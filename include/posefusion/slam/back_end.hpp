@@ -22,20 +22,20 @@ struct FusedFrame {
   std::int32_t map_frame = 0;  ///< SurfelMap::frame() that its surfels have
   MapPose pose;
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist (m, rad) in the camera frame
-  bool is_return = false;  ///< found again: tied to the nearest keyframe, not to the last
+  bool is_return = false;  ///< relocalised: tied to the nearest keyframe, not to the last
   /// Of a return, where it is measured: the pose had the camera not been lost but carried on.
   PosePrior carried;
   /// Where the place of its fragment is not known: its pose by dead reckoning, in the first.
   std::optional<ProvisionalPose> reckoned;
 };
 
-/// The keyframes, the graph that ties them, and the poses that hang on them. A frame's pose is kept
-/// relative to the last keyframe before it, so that a correction moves all. Not thread safe.
+/// The keyframes, their pose graph, and the poses of all frames. A frame's pose is kept relative to
+/// the last keyframe before it, so that a correction moves all. Not thread safe.
 class BackEnd {
  public:
   explicit BackEnd(const GraphConfig& config) : graph_(config) {}
 
-  /// Goes on with a graph and a trajectory that were saved.
+  /// Continues a saved graph and trajectory.
   BackEnd(PoseGraph graph, std::vector<FrameRecord> frames)
       : graph_(std::move(graph)),
         frames_(std::move(frames)),
@@ -53,7 +53,7 @@ class BackEnd {
   /// close().
   int add(const FusedFrame& frame);
 
-  /// A pose by dead reckoning as one on from the last keyframe in use of the first fragment.
+  /// A pose by dead reckoning, as a constraint from the last keyframe in use of the first fragment.
   /// Nothing where there is none.
   std::optional<PoseConstraint> reckonedFrom(const ProvisionalPose& pose) const;
 
@@ -91,9 +91,9 @@ class BackEnd {
 
   struct Counts {
     std::size_t accepted = 0;   ///< corrections of the graph
-    std::size_t refused = 0;    ///< loops that do not fit with the others
+    std::size_t refused = 0;    ///< loops inconsistent with the others
     std::size_t joined = 0;     ///< fragments whose place was found
-    std::size_t withdrawn = 0;  ///< loops that held, and do not any more
+    std::size_t withdrawn = 0;  ///< loops accepted earlier, since rejected
   };
   const Counts& counts() const { return counts_; }
 

@@ -33,13 +33,13 @@ struct MapRenderers {
   ViewRenderer view;
 };
 
-/// Where a frame is, and how far that is believed.
+/// The pose of a frame, and how far it is trusted.
 struct Location {
   TrackingState state = TrackingState::initializing;
   FrameOutcome outcome = FrameOutcome::fused;  ///< `fused`: it may be
   bool located = false;
-  bool is_return = false;         ///< found again with this frame
-  bool is_recent_return = false;  ///< found again a short time ago: the map must not lose by it
+  bool is_return = false;         ///< relocalised with this frame
+  bool is_recent_return = false;  ///< relocalised a short time ago: it must not harm the map
   int fragment = kFirstFragment;
   Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< in the fragment
   TrackingResult tracking;
@@ -47,8 +47,8 @@ struct Location {
   /// the same, shows in no motion between them. Alignments are weighted by tracking.covariance.
   Matrix6d covariance = Matrix6d::Zero();
   SparseMotion motion;
-  /// From the frame before: by corners, by the robot's other sensors, or by both; nothing where
-  /// neither knows.
+  /// From the frame before: by corners, by the robot's other sensors, or by both; nothing without
+  /// either.
   std::optional<MotionPrior> step;
   bool has_odometry = false;  ///< the robot's odometry is part of it
   /// Where the camera would be by these steps alone since the last fused frame; measured where
@@ -61,9 +61,9 @@ struct Location {
 };
 
 /// Finds each frame in the map: a prior from the corners' motion and the robot's other sensors (or
-/// constant velocity without both), alignment from it and, where that fails, from other starts, and
-/// a verdict. Carries the pose by dead reckoning while alignment fails. Coming back after a loss
-/// takes proof over several frames. Works in one fragment of the map at a time. Not thread safe.
+/// constant velocity without either), alignment from it and, where that fails, from other starts,
+/// and a verdict. Carries the pose by dead reckoning while alignment fails. Relocalisation takes
+/// proof over several frames. Works in one fragment of the map at a time. Not thread safe.
 class Localiser {
  public:
   explicit Localiser(const TrackingConfig& config);
@@ -72,8 +72,8 @@ class Localiser {
   Location begin(const WorkingFrame& frame, std::int64_t stamp_ns, const MapPose& pose,
                  const Brightness& brightness = {});
 
-  /// A loaded map: lost, last known at `pose`. The grey levels of the map follow from those of
-  /// frames by `brightness`.
+  /// Starts lost in a loaded map, last known at `pose`. The grey levels of the map follow from
+  /// those of frames by `brightness`.
   void beginLost(const MapPose& pose, const Brightness& brightness);
 
   /// Any later frame. `flow` leads to it from the frame before; `view` is the map from the pose of
@@ -87,13 +87,13 @@ class Localiser {
   std::int64_t lastStamp() const { return previous_.stamp_ns; }
 
   TrackingState state() const { return state_; }
-  /// While lost: the last frames looked right at some place, and fitted each other.
+  /// While lost: the last frames agreed with the map at some place, and with each other.
   bool isProving() const { return proofs_ > 0; }
   /// Between the map and the last frame that was believed.
   const Brightness& brightness() const { return brightness_; }
   /// The last pose of a located frame.
   const MapPose& lastPose() const { return located_; }
-  /// That the next frame is looked for in: that of the last pose or, while lost, of a suggested
+  /// The fragment to search the next frame in: that of the last pose or, while lost, of a suggested
   /// one.
   int fragment() const { return previous_.fragment; }
 
@@ -108,7 +108,7 @@ class Localiser {
   /// Depth is corrected by one more step from the next frame on.
   void correctDepth(DepthCorrector& step);
 
-  /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Believed once some
+  /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Accepted once some
   /// frames in a row agree.
   void suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned);
 
@@ -179,7 +179,7 @@ class Localiser {
   int reckoned_in_a_row_ = 0;       ///< of those, located by dead reckoning
   int proofs_ = 0;                  ///< frames in a row that looked right since the loss
   bool is_suggested_ = false;       ///< the pose comes from a place just found
-  bool is_place_verified_ = false;  ///< and what came since goes on from it
+  bool is_place_verified_ = false;  ///< and later frames continue from it
   int frames_since_return_ = 1 << 20;
 };
 

@@ -36,8 +36,8 @@ class LoopResponder {
   /// Whether take() of that number would not wait.
   virtual bool isReady(std::uint64_t number) = 0;
 
-  /// The answer to a question that was not taken yet, waited for; nothing where it was given up.
-  /// Throws what the work threw.
+  /// Waits for the answer to a question that was not taken yet; nothing where it was given up.
+  /// Rethrows what the work threw.
   virtual std::optional<LoopAnswer> take(std::uint64_t number) = 0;
 
   /// Forgets all questions that were not taken yet.
@@ -48,14 +48,14 @@ class LoopResponder {
 };
 
 /// Carries the questions of a mapper to the loop closer, and the answers back when they are due;
-/// what they want of the map is prepared in a thread, one correction at a time. Its owner's thread
-/// alone may call it.
+/// the corrections of the map are prepared in a thread, one at a time. Its owner's thread alone may
+/// call it.
 class LoopExchange {
  public:
   LoopExchange(double lag_s, AnswerTime time, std::unique_ptr<LoopResponder> responder)
       : lag_s_(lag_s), time_(time), responder_(std::move(responder)) {}
 
-  /// After each frame of the mapper. What the closer threw is thrown here; it goes on afterwards.
+  /// To be called after each frame of the mapper. Rethrows what the closer threw; it goes on.
   void serve(Mapper& mapper);
 
   /// After the last frame: waits for all answers and corrections and hands them on.

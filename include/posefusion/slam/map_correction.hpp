@@ -42,7 +42,7 @@ struct MapCorrection {
   std::vector<std::uint32_t> unswept;  ///< blocks in which layers may be left
 };
 
-/// What has become of it.
+/// The result of a correction.
 struct CorrectedMap {
   std::uint64_t number = 0;
   PoseGraph graph;

@@ -9,7 +9,7 @@
 
 namespace pf {
 
-/// A map, and what messages call it.
+/// A map, and its name in messages.
 struct NamedMap {
   std::string name;
   SavedMap map;
@@ -20,11 +20,11 @@ struct MergedMap {
   SavedMap map;                ///< for Mapper::load()
   std::size_t recognised = 0;  ///< pairs of keyframes, one of each map, whose pictures agree
   std::size_t agreeing = 0;    ///< of them: that agree on how the maps lie to each other
-  std::size_t loops = 0;       ///< between the maps, that hold in the end
+  std::size_t loops = 0;       ///< between the maps, accepted in the end
   std::size_t apart = 0;       ///< fragments of the second map whose place is not known
-  std::size_t layers = 0;      ///< surfels that were gone over a second time, and removed
+  std::size_t layers = 0;      ///< surfels mapped a second time, and removed
 
-  std::string text() const;  ///< all that in a line
+  std::string text() const;  ///< all of it in one line
 };
 
 /// Makes one map of two that one camera, or two that are alike, made of places that they have in

@@ -36,7 +36,7 @@ struct StaticFrame {
   cv::Mat input_depth{};
 };
 
-/// Owns the map: finds each static frame in it (Localiser) and fuses those that are believed. Not
+/// Owns the map: localises each static frame in it (Localiser) and fuses the trusted ones. Not
 /// thread safe.
 class Mapper {
  public:
@@ -53,12 +53,11 @@ class Mapper {
   const RobotMotion& robot() const;
   /// @}
 
-  /// What the frame just processed makes mapping ask the loop closer, once: a new keyframe, or
-  /// where a lost camera is.
+  /// The question to the loop closer after the frame just processed, returned once: about a new
+  /// keyframe, or the relocalisation of a lost camera.
   std::optional<LoopQuestion> takeQuestion();
 
-  /// Whether it helps to know where the camera is: it is lost, or in a fragment whose place is not
-  /// known.
+  /// Whether relocalisation helps: the camera is lost, or in a fragment whose place is not known.
   bool isLookedFor() const;
 
   /// Another loop closer answers from now on: the next question holds all keyframes.
@@ -68,18 +67,18 @@ class Mapper {
   /// brings a lost camera back, once the next frames agree.
   void take(const LoopAnswer& answer);
 
-  /// What answers want of the map, one at a time, for any thread to prepare(). Nothing: nothing is
-  /// wanted, or the last is still in work.
+  /// The next correction of the map by the answers, for any thread to prepare(). Nothing: none is
+  /// due, or the last is still in work.
   std::optional<MapCorrection> takeCorrection();
 
-  /// Takes it in, between two frames: the map, the graph and all poses follow. What belongs to a
-  /// map that was reset is left out. What is to be freed is then in `corrected`.
+  /// Applies it between two frames: the map, the graph and all poses follow. A correction of a map
+  /// that was reset is left out. Memory to be freed is then in `corrected`.
   void take(CorrectedMap& corrected);
 
-  /// The one in work has failed.
+  /// The correction in work has failed.
   void abandonCorrection();
 
-  /// Makes all corrections that are wanted, at once; what is still prepared elsewhere is void.
+  /// Makes all due corrections at once; one still prepared elsewhere is void.
   void settle();
 
   /// From the next frame on depth is corrected by this, until mapping knows better; what
@@ -98,7 +97,7 @@ class Mapper {
   /// why it cannot, or nothing. See lastCalibration().
   std::string askForCalibration();
 
-  /// What became of the last estimate; empty: there was none.
+  /// The result of the last estimate; empty: there was none.
   const std::string& lastCalibration() const;
 
   /// What refine() did.
@@ -118,12 +117,12 @@ class Mapper {
   /// map more than tracking, which saw it everywhere. Nothing changes where the map must not.
   Refinement refine();
 
-  /// Goes on in a saved map: the camera is lost until it is found in it. Frames must be of the
-  /// map's camera. Throws InputError where the map has no keyframe or does not fit together.
+  /// Continues a saved map: the camera is lost until it is relocalised. Frames must be of the map's
+  /// camera. Throws InputError where the map has no keyframe or does not fit together.
   void load(SavedMap map, MapUse use);
 
   /// The clock was put back: stamps may begin anew. The map goes on; the camera is lost until it is
-  /// found in it. Without a map: as reset().
+  /// relocalised. Without a map: as reset().
   void restartClock();
 
   /// From the next frame on. Throws InputError where there is no map to localise in.
@@ -156,7 +155,7 @@ class Mapper {
 
   const SurfelMap& map() const;
 
-  /// Of the frames, as of the last one.
+  /// Pace of the frames, as of the last one.
   const Pace& pace() const;
 
   /// Sets the pose of the map in the user's frame (z up). Nothing in the map changes; its files,

@@ -8,14 +8,14 @@ namespace pf {
 enum class TrackingState {
   initializing,  ///< no frame has been fused yet
   tracking,      ///< located, fused
-  doubtful,      ///< located for now by dead reckoning or by an alignment that is not believed; not
+  doubtful,      ///< located for now by dead reckoning or by an alignment that is not trusted; not
                  ///< fused
   lost           ///< not located
 };
 
-/// What became of a frame, and why it was not fused.
+/// The outcome of a frame: why it was fused or not.
 enum class FrameOutcome {
-  fused,          ///< believed, and taken into the map
+  fused,          ///< trusted, and fused into the map
   bad_input,      ///< sizes, encodings or stamps that cannot be used
   blurred,        ///< dropped by the gate
   no_depth,       ///< too few valid pixels to track (all zero, covered, people everywhere)
@@ -27,10 +27,10 @@ enum class FrameOutcome {
   seen_through,   ///< the frame sees through too much of the model
   unproven,       ///< after a loss: looks right, but not for long enough
   forced,         ///< passed the blur gate only because too many were dropped before it
-  located         ///< believed as one that is fused, in a map that must not change
+  located         ///< trusted like a fused one, in a map that must not change
 };
 
-/// Whether the frame was believed, so that there is nothing to complain of.
+/// Whether the frame was trusted, so that there is nothing to report.
 inline bool isGood(FrameOutcome outcome) {
   return outcome == FrameOutcome::fused || outcome == FrameOutcome::located;
 }

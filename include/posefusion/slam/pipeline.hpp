@@ -18,7 +18,7 @@
 
 namespace pf {
 
-/// A frame after the stages that know no map, ready for the others.
+/// A frame after the stages that need no map, ready for the others.
 struct SeenFrame {
   RgbdFrame frame;
   BlurScore blur;
@@ -68,8 +68,8 @@ class Pipeline {
   /// Between two frames: takes in loops found elsewhere; see Mapper::take().
   void take(const LoopAnswer& answer) { mapper_.take(answer); }
 
-  /// After the last frame: takes in what the loop closer still has to say, and refines the map
-  /// where the settings want it. Returns what that did, or why nothing, in a line.
+  /// After the last frame: takes in the loop closer's last answers, and refines the map where the
+  /// settings ask for it. Returns what that did, or why nothing, in a line.
   std::string finish();
 
   const LoopCounts& loopCounts() const { return loop_thread_.counts(); }

@@ -7,15 +7,15 @@
 
 namespace pf {
 
-/// How the camera moved of late: the sum of its steps, in which older ones fade, over about a
-/// second.
+/// The recent motion of the camera: the sum of its steps over about a second, in which older ones
+/// fade.
 class RecentMotion {
  public:
   /// From the frame before to this one.
   void add(const Eigen::Isometry3d& T_before_after, double elapsed_s);
 
-  /// Part of the view that is new by that, where it shows what is so far away; more than 1 where
-  /// whole views went by.
+  /// Part of the view of surfaces at `distance_m` that is new by this motion; more than 1 where
+  /// whole views have passed.
   double newView(const PinholeCamera& camera, double distance_m) const;
 
   /// Covariance of an aligned pose against poses of the last second, half of it with either: what

@@ -43,8 +43,8 @@ struct Landmark {
 };
 
 /// The corners that are followed now, placed in the map by the poses of the frames that saw them.
-/// They hold a motion to where it began: what is measured from one frame to the next alone drifts
-/// several times faster. A corner on a person moves away from its place, and is found out.
+/// They tie each motion to the map: motion measured from one frame to the next alone drifts several
+/// times faster. A corner on a moving person leaves its place and is detected.
 class Landmarks {
  public:
   /// Null when the corner is new.

@@ -14,7 +14,7 @@ struct TrackingResult {
   int candidates = 0;       ///< model points of the finest level that fall on depth of the frame
   int inliers = 0;          ///< of them matched in the last iteration
   int seen_through = 0;     ///< of them well before the surface that the frame sees
-  int free_directions = 0;  ///< of six, those the images say little of: there the prior decides
+  int free_directions = 0;  ///< of six, those the images hardly fix: there the prior decides
   double geometric_rmse_m = 0;             ///< point-to-plane, over the inliers
   double photometric_rmse = 0;             ///< grey levels, over the inliers
   double cost = 0;                         ///< mean robust cost of the candidates, 0 to 1
