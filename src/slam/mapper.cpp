@@ -217,6 +217,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.views.clear();
   s.retired.clear();
   s.reckoning.reset();
+  s.hint.reset();
   s.gravity = {};
   s.rooms.clear();
   s.next_room = 0;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mapper_state.hpp"
+#include "posefusion/core/error.hpp"
 
 namespace pf {
 namespace {
@@ -15,6 +17,29 @@ constexpr std::size_t kRoomsAtOnce = 4;
 // hardly helps.
 constexpr double kCovered_m = 0.45, kMostUnsure_m = 1.8;
 
+/// Which way a camera looks, about z.
+double headingOf(const Eigen::Isometry3d& T_world_camera) {
+  const Eigen::Vector3d ahead = T_world_camera.linear().col(2);
+  return std::atan2(ahead.y(), ahead.x());
+}
+
+/// The keyframe of the first fragment that is nearest as seen from above.
+std::optional<Eigen::Isometry3d> nearestBelow(const Eigen::Isometry3d& T_world_camera,
+                                              const Eigen::Isometry3d& T_world_map,
+                                              const std::vector<Keyframe>& keyframes) {
+  std::optional<Eigen::Isometry3d> nearest;
+  double least = std::numeric_limits<double>::max();
+  for (const Keyframe& keyframe : keyframes) {
+    if (keyframe.fragment != kFirstFragment) continue;
+    const Eigen::Isometry3d T = T_world_map * keyframe.T_map_camera;
+    const double far = (T.translation() - T_world_camera.translation()).head<2>().squaredNorm();
+    if (far >= least) continue;
+    least = far;
+    nearest = T;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 /// The camera was located. In a fragment the search for the fragment's place goes on.
@@ -22,6 +47,7 @@ void Mapper::State::endSearch() {
   if (!isPlaceKnown()) return;
   map_at_loss.reset();
   rooms.clear();
+  hint.reset();
 }
 
 /// Hands a fused frame to the graph; a new keyframe is a question to the loop closer.
@@ -92,6 +118,7 @@ void Mapper::State::askForPlace() {
   if (!map_at_loss) map_at_loss = searchedMap();
   tellCloser();
   PlaceQuestion place{frame.clone(), map_at_loss, localiser.lastPose()};
+  if (hint) place.elsewhere.push_back(*hint);
   if (const auto reckoned = reckonedPlace()) place.elsewhere.push_back(*reckoned);
   if (const auto pose = reckoning.pose()) {
     const auto reckoned = back_end.reckonedFrom(*pose);
@@ -131,6 +158,23 @@ void Mapper::take(const LoopAnswer& answer) {
 
 bool Mapper::isLookedFor() const {
   return state_->state() == TrackingState::lost || !state_->isPlaceKnown();
+}
+
+std::string Mapper::hint(const Eigen::Isometry3d& T_world_camera) {
+  State& s = *state_;
+  if (!T_world_camera.matrix().allFinite()) {
+    throw InputError("a pose that is not finite, expected numbers");
+  }
+  const Eigen::Isometry3d T_world_map = worldFromMap();
+  const auto nearest = nearestBelow(T_world_camera, T_world_map, s.back_end.graph().keyframes());
+  if (!nearest) throw InputError("there is no map yet that the camera could be looked for in");
+  if (!isLookedFor()) return "the camera is not lost: nothing changes";
+  const double turn_rad = headingOf(T_world_camera) - headingOf(*nearest);
+  Eigen::Isometry3d T = *nearest;
+  T.linear() = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) * nearest->linear();
+  T.translation().head<2>() = T_world_camera.translation().head<2>();
+  s.hint = MapPose{kFirstFragment, T_world_map.inverse() * T};
+  return "the camera is looked for there too";
 }
 
 void Mapper::introduceCloser() {

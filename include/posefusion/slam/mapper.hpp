@@ -60,6 +60,12 @@ class Mapper {
   /// Whether relocalisation helps: the camera is lost, or in a fragment whose place is not known.
   bool isLookedFor() const;
 
+  /// The camera is said to be about here, as seen from above (in the frame of place()), with this
+  /// heading: until it is found, it is also searched for there. The place has to be proven as any
+  /// other. Height and tilt are those of the nearest keyframe. Returns a sentence on what happens.
+  /// Throws InputError without a map, or for a pose that is not finite.
+  std::string hint(const Eigen::Isometry3d& T_world_camera);
+
   /// Another loop closer answers from now on: the next question holds all keyframes.
   void introduceCloser();
 
