@@ -105,6 +105,7 @@ LinkRenewal::~LinkRenewal() {
 }
 
 void LinkRenewal::heard(const std::string& publisher) {
+  if (publisher == ros::this_node::getName()) return;  // there is no link
   const std::lock_guard<std::mutex> lock(mutex_);
   clock_.heard(std::chrono::steady_clock::now());
   publisher_ = publisher;
