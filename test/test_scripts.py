@@ -207,11 +207,18 @@ class Repository(unittest.TestCase):
                       for f in re.findall(r"roslaunch posefusion (\w+\.launch)", text)]
             for thing in named:
                 self.assertTrue(thing.exists(), f"{name(path)}: {thing} does not exist")
-            for setting in re.findall(rf"(?:`|--set )((?:{groups})\.(?!ply|png|pfdb|partial|yaml)\w+)", text):
+            for setting in re.findall(rf"(?:`|--set )((?:{groups})\.(?!ply|png|pfdb|partial|yaml|launch)\w+)", text):
                 self.assertIn(setting, settings, name(path))
                 found += 1
             found += len(named)
         self.assertGreater(found, 30)
+
+    def test_lines_of_documents_are_short(self):
+        """Tables and commands cannot be broken."""
+        for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if not line.startswith(("|", "    ")):
+                    self.assertLessEqual(len(line), 160, f"{path.name}:{number}")
 
     def test_every_setting_is_used(self):
         """A setting that only its own list knows would be believed to do something."""
