@@ -3,10 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
 #include "posefusion/graph/keyframe.hpp"
+#include "posefusion/map/render.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
 namespace pf {
@@ -17,8 +19,25 @@ struct SeenPoints {
   std::vector<Eigen::Vector3f> points;
 };
 
-/// Calls visit(seen) for each keyframe of the first fragment: the stable surfels that it saw, one
-/// ray in 4 x 4 pixels, as they are in the map now. People and what has moved are not in it.
+/// Draws what keyframes of the first fragment see of its stable surfels, one ray in 4 x 4 pixels,
+/// as they are in the map now. People and what has moved are not in it.
+class KeyframeRays {
+ public:
+  /// `camera`: of the keyframes.
+  explicit KeyframeRays(const PinholeCamera& camera);
+
+  /// Depth along the rays (CV_32FC1, m, 0: nothing), valid until the next call.
+  const cv::Mat& draw(const SurfelMap& map, const Eigen::Isometry3d& T_map_camera);
+
+  SeenPoints points(const cv::Mat& depth_m, const Eigen::Isometry3d& T_map_camera) const;
+
+ private:
+  PinholeCamera camera_;
+  SurfelRenderer renderer_;
+  ModelView view_;
+};
+
+/// Calls visit(seen) for each keyframe of the first fragment.
 void forEachKeyframe(const SurfelMap& map, const PinholeCamera& camera,
                      const std::vector<Keyframe>& keyframes,
                      const std::function<void(const SeenPoints&)>& visit);
