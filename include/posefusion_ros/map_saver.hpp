@@ -11,6 +11,7 @@
 #include "posefusion/io/run_folder.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
+#include "posefusion/mesh/triangle_mesh.hpp"
 #include "posefusion/slam/mapper.hpp"
 #include "posefusion_ros/ended_maps.hpp"
 #include "posefusion_ros/parameters.hpp"
@@ -59,6 +60,10 @@ class MapSaver {
   /// there whole or not at all. Returns a sentence that says what was written where. Throws
   /// InputError when there is nothing to save, or naming what cannot be written.
   std::string save(const MapToSave& map);
+
+  /// On request: writes a mesh into a new folder, `<date>_<time>_mesh`, as save() does. Beside the
+  /// others, from any thread.
+  std::string saveMesh(const pf::TriangleMesh& mesh) const;
 
   /// Writes the map as it is now into its folder, or the file that it goes on in, and goes on. Says
   /// what was written where; empty where there is nothing, or no folder was named. Throws

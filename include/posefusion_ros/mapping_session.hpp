@@ -54,6 +54,7 @@ class MappingSession {
                           std::string& trouble);
 
   const pf::Mapper& mapper() const { return *mapper_; }
+  const pf::PinholeCamera& camera() const { return camera_; }  ///< of the frames of the map
   const pf::LoopExchange& loops() const { return loops_; }
   const MapSaver& saver() const { return saver_; }
   /// See Mapper. @{
@@ -63,6 +64,9 @@ class MappingSession {
 
   /// See Mapper.
   void place(const Eigen::Isometry3d& T_world_map) { mapper_->place(T_world_map); }
+  std::string hint(const Eigen::Isometry3d& T_world_camera) {
+    return mapper_->hint(T_world_camera);
+  }
   /// From the next frame on, for this map and those after it.
   void set(const pf::TrackingConfig& tracking) {
     config_.tracking = tracking;

@@ -38,9 +38,13 @@ constexpr char kStatus[] = "status";
 constexpr char kStateText[] = "state_text";
 constexpr char kOdometry[] = "odometry";
 constexpr char kPose[] = "pose";
+constexpr char kPoseWithCovariance[] = "pose_with_covariance";
+constexpr char kInitialPose[] = "initialpose";
 constexpr char kProvisionalPose[] = "provisional_pose";
 constexpr char kPath[] = "path";
 constexpr char kSurfels[] = "surfels";
+constexpr char kMesh[] = "mesh";
+constexpr char kGrid[] = "grid";
 // Fusion asks the loop closer, and its answer.
 constexpr char kKeyframe[] = "keyframe";
 constexpr char kLoopConstraint[] = "loop_constraint";

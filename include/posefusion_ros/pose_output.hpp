@@ -53,6 +53,14 @@ class PoseOutput {
   /// where a transform is wanting.
   void publishProvisional(const std_msgs::Header& image, const pf::ProvisionalPose& pose);
 
+  /// The camera of a base that is at `T_map_base`, by its mount at the stamp of an image; without a
+  /// base frame, of a camera that is held level there and looks along x. Nothing where a transform
+  /// is wanting: `note` says which.
+  std::optional<Eigen::Isometry3d> cameraOf(const std_msgs::Header& image,
+                                            const Eigen::Isometry3d& T_map_base, std::string& note);
+
+  const std::string& mapFrame() const { return settings_.map_frame; }
+
   /// No pose is known: sends map -> odom as it was known last (see PoseOutputSettings), unless it
   /// was sent with this stamp, or a later one, already. The robot moves on by its odometry. Without
   /// odometry nothing is sent: it would be a pose, and a false one.
@@ -78,6 +86,7 @@ class PoseOutput {
 
  private:
   struct Links;  // camera and odometry of the robot at the stamp
+  bool lookAtMount(const std_msgs::Header& image, Links& links, std::string& note);
   bool look(const std_msgs::Header& image, Links& links, std::string& note);
   /// Says why it is not sent; empty when it is.
   std::string sendTransform(const ros::Time& stamp, const std::string& child,
@@ -87,7 +96,7 @@ class PoseOutput {
   void extendPath(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& T_base_camera);
 
   PoseOutputSettings settings_;
-  ros::Publisher odometry_, pose_, provisional_, path_publisher_;
+  ros::Publisher odometry_, pose_, pose_with_covariance_, provisional_, path_publisher_;
   std::unique_ptr<ListeningLookup> lookup_;        // only where a frame has to be looked up
   std::unique_ptr<ListeningParentWatch> parents_;  // only where transforms are sent
   bool sends_ = false;                             // the last transform was sent

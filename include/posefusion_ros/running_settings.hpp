@@ -16,6 +16,8 @@ struct PublishingConfig {
   double path_period_s = 1.0;
   double surfels_period_s = 1.0;
   int surfels_max_points = 500000;
+  double mesh_period_s = 2.0;
+  double grid_period_s = 5.0;
 };
 
 inline void visitFields(PublishingConfig& c, pf::FieldVisitor& v) {
@@ -23,6 +25,9 @@ inline void visitFields(PublishingConfig& c, pf::FieldVisitor& v) {
   v.number("surfels_period_s", c.surfels_period_s, 0.0, 3600.0, "how often the surfels are sent");
   v.integer("surfels_max_points", c.surfels_max_points, 0, 100000000,
             "more surfels than that: evenly many are left out; 0: all");
+  v.number("mesh_period_s", c.mesh_period_s, 0.0, 3600.0,
+           "how often what changed of the mesh is sent");
+  v.number("grid_period_s", c.grid_period_s, 0.0, 3600.0, "how often the grid is sent");
 }
 
 /// The lists of one group of pf::Config.

@@ -15,10 +15,12 @@
 #include "posefusion_ros/mapping_session.hpp"
 #include "posefusion_ros/mapping_watch.hpp"
 #include "posefusion_ros/names.hpp"
+#include "posefusion_ros/place_hint.hpp"
 #include "posefusion_ros/pose_output.hpp"
 #include "posefusion_ros/robot_input.hpp"
 #include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/status_output.hpp"
+#include "posefusion_ros/surface_output.hpp"
 #include "posefusion_ros/worker.hpp"
 #include "transform_hold.hpp"
 
@@ -40,6 +42,7 @@ class FusionNodelet : public ChainNodelet {
     input_.reset();
     if (services_) services_->shutdown();
     if (map_output_) worker_->post([this] { map_output_->close(); }).get();
+    if (surfaces_) surfaces_->close();
     worker_.reset();
     status_.clearText();                      // it is sent while the map is saved
     if (!session_) return;                    // start() may have failed anywhere
@@ -59,6 +62,7 @@ class FusionNodelet : public ChainNodelet {
     Parameters parameters(getPrivateNodeHandle());
     const MappingSettings settings = readMapping(parameters);
     const PoseOutputSettings poses = readPoseOutput(parameters, settings.lossless);
+    const SurfaceOutputSettings surfaces = readSurfaceOutput(parameters);
     const RobotInputSettings robot = readRobotInput(parameters, poses.odom_frame);
     map_frame_ = poses.map_frame;
     is_lossless_ = settings.lossless;
@@ -77,6 +81,14 @@ class FusionNodelet : public ChainNodelet {
                                             [this](const Set& set) { process(set); });
     map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
                                               [this] { worker_->post([this] { showMap(); }); });
+    // In the worker, as who listens already calls it from there.
+    worker_
+        ->post([&] {
+          surfaces_ = std::make_unique<SurfaceOutput>(
+              handle, surfaces, poses.publishing, map_frame_,
+              [this] { worker_->post([this] { offerSurfaces(last_); }); });
+        })
+        .get();
     offerServices({settings.config.tracking, poses.publishing});
     if (!is_lossless_) {
       hold_ = std::make_unique<TransformHold>(getMTNodeHandle(), [this](const ros::Time& now) {
@@ -84,6 +96,7 @@ class FusionNodelet : public ChainNodelet {
       });
     }
     robot_ = std::make_unique<RobotInput>(handle, robot);
+    hint_ = std::make_unique<PlaceHint>(handle);
     rejected_ = handle.subscribe(topics::kRejected, 1000, &FusionNodelet::onRejected, this);
     input_ = std::make_unique<FusionInput>(handle, [this](const Set& set) { onSet(set); });
     // A chain that is lossless waits for the closer too, so that the first answer is not missed.
@@ -109,6 +122,7 @@ class FusionNodelet : public ChainNodelet {
       session_->set(settings.tracking);
       pose_output_->set(settings.publishing);
       map_output_->set(settings.publishing);
+      surfaces_->set(settings.publishing);
     };
     // Services wait for the worker: in a queue of their own.
     services_ = std::make_unique<FusionServices>(getMTPrivateNodeHandle(), *session_,
@@ -123,6 +137,12 @@ class FusionNodelet : public ChainNodelet {
 
   void publishMap(const ros::Time& stamp) {
     map_output_->publishSurfels(session_->mapper().map(), stamp, pose_output_->mapFromStart());
+  }
+
+  void offerSurfaces(const ros::Time& stamp) {
+    surfaces_->offer(stamp, [this](const ros::Time& now) {
+      return snapshotOf(*session_, pose_output_->mapFromStart(), now);
+    });
   }
 
   void onSet(const Set& set) {
@@ -162,6 +182,7 @@ class FusionNodelet : public ChainNodelet {
     const int version = session_->mapper().backEnd().graph().version();
     const std::string deaf = robot_->tell(header, *session_);
     if (!deaf.empty()) NODELET_WARN_THROTTLE(30.0, "%s", deaf.c_str());
+    hint_->tell(header, *session_, *pose_output_);
     std::string trouble;
     const FrameStatus status = session_->process(toStaticFrame(set), header.frame_id, trouble);
     tell(session_->takeNotices());
@@ -178,6 +199,7 @@ class FusionNodelet : public ChainNodelet {
     }
     mapping_watch_.note(status, *session_, watch());
     publishMap(header.stamp);
+    offerSurfaces(header.stamp);
     publishStatus(status, header.stamp, reason, static_cast<std::uint8_t>(status.outcome));
   }
 
@@ -225,6 +247,7 @@ class FusionNodelet : public ChainNodelet {
     NODELET_WARN("the clock was put back: the map goes on, the camera is looked for in it");
     pose_output_->restartClock();
     map_output_->reset();
+    surfaces_->restartClock();
   }
 
   void beginPoses() {
@@ -238,6 +261,7 @@ class FusionNodelet : public ChainNodelet {
   void beginOutput() {
     beginPoses();
     map_output_->reset();
+    surfaces_->reset();
   }
 
   /// Another map, on request.
@@ -253,10 +277,12 @@ class FusionNodelet : public ChainNodelet {
   MappingWatch mapping_watch_;
   ros::Time last_;  // the newest frame
   std::unique_ptr<MapOutput> map_output_;
+  std::unique_ptr<SurfaceOutput> surfaces_;
   std::unique_ptr<PoseOutput> pose_output_;
   StatusOutput status_;
   std::unique_ptr<TransformHold> hold_;
   std::unique_ptr<RobotInput> robot_;
+  std::unique_ptr<PlaceHint> hint_;
   std::unique_ptr<Worker<Set>> worker_;
   std::unique_ptr<FusionInput> input_;
   ros::Subscriber rejected_;

@@ -2,11 +2,15 @@
 #include "fusion_services.hpp"
 
 #include <ros/console.h>
+#include <tbb/task_arena.h>
 
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/map/stable_surfels.hpp"
+#include "posefusion/mesh/surfel_mesh.hpp"
 #include "posefusion_ros/calibration_wait.hpp"
 #include "posefusion_ros/trigger.hpp"
 
@@ -24,6 +28,7 @@ FusionServices::FusionServices(ros::NodeHandle& handle, MappingSession& session,
   ros::NodeHandle waiting(handle);
   waiting.setCallbackQueue(&waiting_);
   services_.push_back(waiting.advertiseService("calibrate", &FusionServices::onCalibrate, this));
+  services_.push_back(waiting.advertiseService("save_mesh", &FusionServices::onSaveMesh, this));
   waiter_.start();
   map_query_ = std::make_unique<MapQuery>(handle, actions_.post, actions_.draw);
   settings_ = std::make_unique<SettingsServer<FusionSettings>>(
@@ -118,6 +123,30 @@ bool FusionServices::onCalibrate(Trigger::Request& /*request*/, Trigger::Respons
   if (response.message.empty()) {
     response.success = 0U;
     response.message = "shutting down";
+  }
+  return tell(response);
+}
+
+/// Between two frames the map is copied alone, which shares its surfels.
+bool FusionServices::onSaveMesh(Trigger::Request& /*request*/, Trigger::Response& response) {
+  std::optional<pf::SurfelMap> map;
+  Eigen::Isometry3d T_world_map = Eigen::Isometry3d::Identity();
+  const auto copy = [&] {
+    map = session_.mapper().map();
+    T_world_map = session_.mapper().worldFromMap();
+    return std::string();
+  };
+  answerTrigger(actions_.post, copy, response);
+  if (response.success == 0U) return tell(response);
+  try {
+    const pf::SurfelArrays surfels = pf::stableSurfels(*map, T_world_map);
+    map.reset();
+    tbb::task_arena alone(1);  // the threads that parallel loops share belong to the frames
+    alone.execute(
+        [&] { response.message = session_.saver().saveMesh(pf::surfelMesh(surfels, {})); });
+  } catch (const std::exception& error) {
+    response.success = 0U;
+    response.message = error.what();
   }
   return tell(response);
 }

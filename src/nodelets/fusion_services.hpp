@@ -50,6 +50,7 @@ class FusionServices {
   bool onSave(Trigger::Request& request, Trigger::Response& response);
   bool onReset(Trigger::Request& request, Trigger::Response& response);
   bool onCalibrate(Trigger::Request& request, Trigger::Response& response);
+  bool onSaveMesh(Trigger::Request& request, Trigger::Response& response);
   bool onLoad(LoadMap::Request& request, LoadMap::Response& response);
   bool onSetMode(SetMode::Request& request, SetMode::Response& response);
   bool onPause(Trigger::Request& request, Trigger::Response& response);
@@ -63,10 +64,11 @@ class FusionServices {
   MappingSession& session_;
   Actions actions_;
   std::atomic<bool> is_paused_{false}, is_ending_{false};
-  // Whoever waits for frames to come must not hold a thread of the manager: frames may wait for it.
+  // Whoever waits for frames to come, or works for long, must not hold a thread of the manager:
+  // frames may wait for it.
   ros::CallbackQueue waiting_;
   std::vector<ros::ServiceServer> services_;
-  ros::AsyncSpinner waiter_{1, &waiting_};
+  ros::AsyncSpinner waiter_{2, &waiting_};
   std::unique_ptr<MapQuery> map_query_;
   std::unique_ptr<SettingsServer<FusionSettings>> settings_;
 };

@@ -6,6 +6,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/map_file.hpp"
+#include "posefusion/io/mesh_file.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -17,6 +18,7 @@ constexpr char kMap[] = "map.ply", kDatabase[] = "map.pfdb";
 constexpr char kTrajectory[] = "trajectory.txt";
 constexpr char kPartial[] = "trajectory.partial.txt", kPartialDatabase[] = "map.partial.pfdb";
 constexpr char kNewDatabase[] = "map.pfdb.part";
+constexpr char kMesh[] = "mesh.ply", kMeshOnRequest[] = "_mesh";
 constexpr char kOnRequest[] = "_saved";  // what a folder's name ends with that was asked for
 
 namespace fs = std::filesystem;
@@ -87,6 +89,19 @@ std::string MapSaver::save(const MapToSave& map) {
   target.makeLatest();
   return "saved map.ply, map.pfdb and trajectory.txt (" + counts + ") in " + target.path() +
          (continued.empty() ? "" : "; " + continued);
+}
+
+std::string MapSaver::saveMesh(const pf::TriangleMesh& mesh) const {
+  pf::RunFolder target(output(), pf::RunFolder::Name::partial, kMeshOnRequest);
+  try {
+    pf::saveMesh(target.file(kMesh), mesh);
+    target.finish();
+  } catch (const std::exception&) {
+    target.discard();
+    throw;
+  }
+  return "saved mesh.ply (" + std::to_string(mesh.triangles.size()) + " triangles) in " +
+         target.path();
 }
 
 /// Into the folder of the map that grows.

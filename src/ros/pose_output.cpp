@@ -56,6 +56,8 @@ PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settin
     : settings_(settings),
       odometry_(handle.advertise<nav_msgs::Odometry>(topics::kOdometry, kQueue)),
       pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kQueue)),
+      pose_with_covariance_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>(
+          topics::kPoseWithCovariance, kQueue)),
       provisional_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>(
           topics::kProvisionalPose, kQueue)),
       path_publisher_(handle.advertise<nav_msgs::Path>(topics::kPath, 1, true)) {
@@ -87,14 +89,26 @@ void PoseOutput::load(const std::optional<Eigen::Isometry3d>& T_map_start) {
   T_map_start_ = T_map_start;
 }
 
-bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& note) {
+bool PoseOutput::lookAtMount(const std_msgs::Header& image, Links& links, std::string& note) {
   const std::string camera = plainFrame(image.frame_id);
   links.base = settings_.base_frame.empty() ? camera : settings_.base_frame;
-  if (links.base != camera) {
-    const auto T = (*lookup_)->find(links.base, camera, image.stamp, note);
-    if (!T) return false;
-    links.T_base_camera = *T;
-  }
+  if (links.base == camera) return true;
+  const auto T = (*lookup_)->find(links.base, camera, image.stamp, note);
+  if (T) links.T_base_camera = *T;
+  return T.has_value();
+}
+
+std::optional<Eigen::Isometry3d> PoseOutput::cameraOf(const std_msgs::Header& image,
+                                                      const Eigen::Isometry3d& T_map_base,
+                                                      std::string& note) {
+  Links links;
+  if (!lookAtMount(image, links, note)) return std::nullopt;
+  const bool has_base = links.base != plainFrame(image.frame_id);
+  return T_map_base * (has_base ? links.T_base_camera : pf::bodyFromOptical());
+}
+
+bool PoseOutput::look(const std_msgs::Header& image, Links& links, std::string& note) {
+  if (!lookAtMount(image, links, note)) return false;
   if (!settings_.odom_frame.empty()) {
     std::string of_odometry;
     const auto T = (*lookup_)->find(settings_.odom_frame, links.base, image.stamp, of_odometry);
@@ -127,10 +141,14 @@ bool PoseOutput::publish(const std_msgs::Header& image, const pf::FrameStatus& s
     if (!unsent.empty()) note = unsent;
   }
   sendOdometry(image.stamp, links, T_map_base, status.covariance);
+  geometry_msgs::PoseWithCovarianceStamped with_covariance;
+  with_covariance.header.stamp = image.stamp;
+  with_covariance.header.frame_id = settings_.map_frame;
+  with_covariance.pose = withCovariance(T_map_base, links.T_base_camera, status.covariance);
+  pose_with_covariance_.publish(with_covariance);
   geometry_msgs::PoseStamped pose;
-  pose.header.stamp = image.stamp;
-  pose.header.frame_id = settings_.map_frame;
-  pose.pose = toPose(T_map_base);
+  pose.header = with_covariance.header;
+  pose.pose = with_covariance.pose.pose;
   pose_.publish(pose);
   extendPath(pose, links.T_base_camera);
   return true;
