@@ -127,6 +127,16 @@ TEST(MovingObjects, WhatRestsIsOfTheStaticWorldAfterAWhile) {
   EXPECT_EQ(room.maskedPart(), 0.0);
 }
 
+TEST(MovingObjects, WhatStopsIsStaticSoonerThanTheOldestMomentForgetsIt) {
+  for (const double speed_m_s : {0.15, 0.25, 0.5, 1.0}) {
+    Room room(moving(-1.0, speed_m_s, 1.0, 2.2));
+    room.runUntil(2.2);
+    ASSERT_EQ(room.objects().size(), 1U) << speed_m_s;
+    room.runUntil(3.0);
+    EXPECT_EQ(room.maskedPart(), 0.0) << speed_m_s;
+  }
+}
+
 TEST(MovingObjects, WhatAlwaysStoodThereIsNeverMasked) {
   Room room(moving(-0.2, 0.0));
   room.runUntil(2.0);

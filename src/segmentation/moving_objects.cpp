@@ -22,6 +22,9 @@ constexpr int kLeastSeeds = 12;
 constexpr double kMovingPart = 0.10;
 // A moment counts for a piece if it knows this part of its cells.
 constexpr double kKnownPart = 0.2;
+// Of what goes on as it went, the nearest moment shows its part; of what has stopped since less
+// than this of that.
+constexpr double kGoesOn = 0.5;
 // Evidence is no more than this (frames at 30 Hz): what has come to rest counts as static after
 // half a second without any.
 constexpr double kMostOdds = 15.0;
@@ -155,17 +158,24 @@ std::vector<MovingObjects::Piece> MovingObjects::grow(const MovingScene& scene) 
 }
 
 /// For (1) or against (-1) that a piece moves, by the moment that speaks most for it: what is slow
-/// or has just begun shows at one of them.
+/// or has just begun shows at one of them. Against it where the nearest moment shows that it has
+/// stopped since.
 double MovingObjects::evidenceOf(const Piece& piece) const {
-  double most = -1.0;
-  bool is_known = false;
+  double most = -1.0, rate = 0.0, nearest_s = 0.0, nearest = 0.0;
   for (std::size_t m = 0; m < piece.was_free.size(); ++m) {
     const double known = piece.was_free[m] + piece.was_there[m];
     if (known < kKnownPart * static_cast<double>(piece.cells.size())) continue;
-    is_known = true;
-    most = std::max(most, (piece.was_free[m] / known - kMovingPart) / kMovingPart);
+    const double free = piece.was_free[m] / known;
+    if (nearest_s == 0.0) {
+      nearest_s = SeenBefore::kAges_s[m];
+      nearest = free;
+    }
+    rate = std::max(rate, free / SeenBefore::kAges_s[m]);
+    most = std::max(most, (free - kMovingPart) / kMovingPart);
   }
-  return is_known ? std::clamp(most, -1.0, 1.0) : 0.0;
+  if (nearest_s == 0.0) return 0.0;
+  if (nearest < kGoesOn * rate * nearest_s) return -1.0;
+  return std::clamp(most, -1.0, 1.0);
 }
 
 /// The object is where the piece is.
