@@ -101,7 +101,9 @@ class Commands(unittest.TestCase):
         self.run_to_its_end("rosparam set use_sim_time true")
         chain = self.start(ready_to_run(feed[0]))
         self.start(ready_to_run(play[0]))
-        short = [c for d, c in commands() if not runs_on(c) and "replay.launch" not in c]
+        # A mesh needs stable surfels, which this bag is too short for: test_chain_surfaces saves one.
+        short = [c for d, c in commands()
+                 if not runs_on(c) and "replay.launch" not in c and "save_mesh" not in c]
         self.assertGreater(len(short), 6)
         self.run_to_its_end("rostopic echo -n 1 /posefusion/status")  # it has begun
         for command in short:
