@@ -3,10 +3,9 @@
 what that costs the path."""
 import json
 
+from bench_people import EMBEDDED
 from bench_report import call
 from bench_runs import PROGRAMS, Runs, note
-
-EMBEDDED = ("--detector", "embedded")
 
 
 class Things(Runs):
