@@ -88,7 +88,7 @@ void RunResults::finish(RunReport& report) {
   attempt([&] { report.writeSummary(folder_.path(), savedSurfels(mapper.map())); });
   attempt([&] { map_.finish(); });
   attempt([&] { saveMap(folder_.file("map.ply"), mapper.map(), mapper.worldFromMap()); });
-  finishSurfaces();
+  attempt([&] { finishSurfaces(); });
   attempt([&] { report.writePictures(folder_.path(), mapper.map()); });
   if (failed_.empty()) {
     folder_.finish();
