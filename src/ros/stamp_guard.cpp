@@ -5,12 +5,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "posefusion/core/stamps.hpp"
+
 namespace posefusion_ros {
 namespace {
-
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
-}
 
 std::string text(double value_s) {
   std::ostringstream out;
@@ -21,7 +19,7 @@ std::string text(double value_s) {
 }  // namespace
 
 bool StampGuard::follows(const Arrival& last, const Arrival& next) const {
-  const double step_s = seconds(last.stamp_ns, next.stamp_ns);
+  const double step_s = pf::secondsBetween(last.stamp_ns, next.stamp_ns);
   const double passed_s = std::chrono::duration<double>(next.time - last.time).count();
   return step_s > 0.0 && step_s <= passed_s + jump_s_;
 }
@@ -34,7 +32,7 @@ std::string StampGuard::defectOf(std::int64_t stamp_ns, Time now) {
     jump_.reset();
     return {};
   }
-  const double step_s = seconds(last_->stamp_ns, stamp_ns);
+  const double step_s = pf::secondsBetween(last_->stamp_ns, stamp_ns);
   if (step_s == 0.0) return "the stamp is that of the frame before";
   if (step_s < 0.0 && -step_s <= jump_s_) return "the stamp went back by " + text(-step_s);
   jump_ = next;
