@@ -9,10 +9,10 @@
 
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion_ros/camera_topics.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/conversions.hpp"
-#include "posefusion_ros/image_subscriber.hpp"
 #include "posefusion_ros/input_pairing.hpp"
 #include "posefusion_ros/input_settings.hpp"
 #include "posefusion_ros/names.hpp"
@@ -23,7 +23,6 @@
 
 namespace posefusion_ros {
 
-using sensor_msgs::CameraInfoConstPtr;
 using sensor_msgs::ImageConstPtr;
 
 /// Pairs the camera's topics, checks and rectifies them, and lets sharp frames pass: the very same
@@ -67,26 +66,12 @@ class BlurGateNodelet : public ChainNodelet {
   }
 
   void subscribe(ros::NodeHandle& handle) {
-    const int queue = input_.pairing.queue_size;
-    // Before the first frame comes. Whether rectified: the raw name counts, remapped.
-    origin_ = " (colour " + handle.resolveName(input_.color_topic) + ", depth " +
-              handle.resolveName(input_.depth_topic) + ", camera_info " +
-              handle.resolveName(input_.camera_info_topic) + ")";
+    // Before the first frame comes: the raw name counts, remapped.
     is_rectified_ = input_.input_rectified == "yes" ||
                     (input_.input_rectified == "auto" &&
                      handle.resolveName(input_.color_topic).find("_rect") != std::string::npos);
-    color_ = ImageSubscriber(handle, {input_.color_topic, input_.image_transport, queue, 0.0},
-                             [this](const InputImage& image) { pairing_->addColor(image); });
-    depth_ = ImageSubscriber(
-        handle, {input_.depth_topic, input_.depthTransport(), queue, input_.depth_stamp_offset_s},
-        [this](const InputImage& image) { pairing_->addDepth(image); });
-    info_ = handle.subscribe(input_.camera_info_topic, queue, &BlurGateNodelet::onInfo, this);
-    depth_info_ = handle.subscribe(input_.depth_camera_info_topic, queue,
-                                   &BlurGateNodelet::onDepthInfo, this);
+    topics_.subscribe(handle, input_, *pairing_);
   }
-
-  void onInfo(const CameraInfoConstPtr& info) { pairing_->addInfo(info); }
-  void onDepthInfo(const CameraInfoConstPtr& info) { pairing_->addDepthInfo(info); }
 
   void onSet(const InputPairing::Set& set) {
     sets_since_look_ = true;
@@ -120,7 +105,7 @@ class BlurGateNodelet : public ChainNodelet {
       camera.depth_unit_m = input_.depth_unit_m;
       return toFrame(set.color, set.depth, camera);
     } catch (const pf::InputError& error) {
-      throw pf::InputError(error.what() + origin_);
+      throw pf::InputError(error.what() + topics_.origin());
     }
   }
 
@@ -153,11 +138,12 @@ class BlurGateNodelet : public ChainNodelet {
   void tellMissing(const ros::WallTimerEvent&) {
     const auto now = std::chrono::steady_clock::now();
     std::string topics;
-    if (!sets_since_look_) topics = topicText(color_) + topicText(depth_) + infoText();
+    if (!sets_since_look_)
+      topics = topicText(topics_.color()) + topicText(topics_.depth()) + infoText();
     if (missing_pause_.isDue(now, topics)) {
-      NODELET_WARN(
-          "no complete frame for %.0f s. %s", missing_after_s_,
-          pairing_->describeArrivals({topicText(color_), topicText(depth_), infoText()}).c_str());
+      const std::string arrivals = pairing_->describeArrivals(
+          {topicText(topics_.color()), topicText(topics_.depth()), infoText()});
+      NODELET_WARN("no complete frame for %.0f s. %s", missing_after_s_, arrivals.c_str());
     }
     if (!sets_since_look_) {
       const ros::Time time = ros::Time::now();
@@ -175,9 +161,9 @@ class BlurGateNodelet : public ChainNodelet {
                                 : unpublished(image.topic(), image.type(), image.advice());
   }
   std::string infoText() const {
-    return info_.getNumPublishers() > 0
-               ? info_.getTopic()
-               : unpublished(info_.getTopic(), "sensor_msgs/CameraInfo", "");
+    const ros::Subscriber& info = topics_.info();
+    return info.getNumPublishers() > 0 ? info.getTopic()
+                                       : unpublished(info.getTopic(), "sensor_msgs/CameraInfo", "");
   }
   std::string unpublished(const std::string& topic, const std::string& type,
                           const std::string& advice) const {
@@ -188,7 +174,6 @@ class BlurGateNodelet : public ChainNodelet {
   pf::BlurConfig config_;
   InputSettings input_;
   bool is_rectified_ = false;
-  std::string origin_;  ///< of the frames, for messages
   double missing_after_s_ = 5.0;
   bool sets_since_look_ = false;
   std::string clock_defect_;  ///< of the last frame
@@ -197,8 +182,7 @@ class BlurGateNodelet : public ChainNodelet {
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;
-  ImageSubscriber color_, depth_;
-  ros::Subscriber info_, depth_info_;
+  CameraTopics topics_;
   ros::WallTimer timer_;
   std::unique_ptr<SettingsServer<GateSettings>> settings_;
 };

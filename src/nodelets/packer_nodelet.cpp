@@ -6,18 +6,16 @@
 #include <memory>
 #include <string>
 
+#include "posefusion_ros/camera_topics.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/compressed_frame.hpp"
-#include "posefusion_ros/image_subscriber.hpp"
 #include "posefusion_ros/input_pairing.hpp"
 #include "posefusion_ros/input_settings.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/stamp_guard.hpp"
 
 namespace posefusion_ros {
-
-using sensor_msgs::CameraInfoConstPtr;
 
 /// Sends colour, depth and camera_info of a frame as one compressed message. At most one waits to
 /// be sent: what a slow network does not take is replaced by the next.
@@ -37,33 +35,15 @@ class PackerNodelet : public ChainNodelet {
       guarded(set.color.header, [&] { onSet(set); });
     };
     handlers.unused = [this](const std_msgs::Header& header, const std::string& reason) {
-      reject(header, TrackingStatusMsg::BAD_INPUT, reason + origin_);
+      reject(header, TrackingStatusMsg::BAD_INPUT, reason + topics_.origin());
     };
     handlers.jump = [this](double seconds) { NODELET_WARN("stamps went back by %.3f s", seconds); };
     pairing_ = std::make_unique<InputPairing>(input_.pairing, std::move(handlers));
     publisher_ = handle.advertise<CompressedFrameMsg>(topics::kCompressedFrame, 1);
     timer_ = handle.createWallTimer(ros::WallDuration(missing_after_s_),
                                     &PackerNodelet::tellMissing, this);
-    subscribe(handle);
+    topics_.subscribe(handle, input_, *pairing_);
   }
-
-  void subscribe(ros::NodeHandle& handle) {
-    const int queue = input_.pairing.queue_size;
-    origin_ = " (colour " + handle.resolveName(input_.color_topic) + ", depth " +
-              handle.resolveName(input_.depth_topic) + ", camera_info " +
-              handle.resolveName(input_.camera_info_topic) + ")";
-    color_ = ImageSubscriber(handle, {input_.color_topic, input_.image_transport, queue, 0.0},
-                             [this](const InputImage& image) { pairing_->addColor(image); });
-    depth_ = ImageSubscriber(
-        handle, {input_.depth_topic, input_.depthTransport(), queue, input_.depth_stamp_offset_s},
-        [this](const InputImage& image) { pairing_->addDepth(image); });
-    info_ = handle.subscribe(input_.camera_info_topic, queue, &PackerNodelet::onInfo, this);
-    depth_info_ =
-        handle.subscribe(input_.depth_camera_info_topic, queue, &PackerNodelet::onDepthInfo, this);
-  }
-
-  void onInfo(const CameraInfoConstPtr& info) { pairing_->addInfo(info); }
-  void onDepthInfo(const CameraInfoConstPtr& info) { pairing_->addDepthInfo(info); }
 
   void onSet(const InputPairing::Set& set) {
     sets_since_look_ = true;
@@ -81,7 +61,8 @@ class PackerNodelet : public ChainNodelet {
                   std::to_string(frame->color.data.size() + frame->depth.data.size()));
       publisher_.publish(frame);
     } catch (const std::exception& error) {
-      return reject(set.color.header, TrackingStatusMsg::BAD_INPUT, error.what() + origin_);
+      return reject(set.color.header, TrackingStatusMsg::BAD_INPUT,
+                    error.what() + topics_.origin());
     }
     passed(set.color.header.stamp);
   }
@@ -90,22 +71,20 @@ class PackerNodelet : public ChainNodelet {
     const bool missing = !sets_since_look_;
     sets_since_look_ = false;
     if (!pause_.isDue(std::chrono::steady_clock::now(), missing ? "missing" : "")) return;
-    NODELET_WARN(
-        "no complete frame for %.0f s. %s", missing_after_s_,
-        pairing_->describeArrivals({color_.topic(), depth_.topic(), info_.getTopic()}).c_str());
+    const std::string arrivals = pairing_->describeArrivals(
+        {topics_.color().topic(), topics_.depth().topic(), topics_.info().getTopic()});
+    NODELET_WARN("no complete frame for %.0f s. %s", missing_after_s_, arrivals.c_str());
   }
 
   InputSettings input_;
   int jpeg_quality_ = 80;
   double missing_after_s_ = 5.0;
-  std::string origin_;  ///< of the frames, for messages
   std::unique_ptr<RateLimit> rate_;
   bool sets_since_look_ = false;
   GrowingPause pause_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher publisher_;
-  ImageSubscriber color_, depth_;
-  ros::Subscriber info_, depth_info_;
+  CameraTopics topics_;
   ros::WallTimer timer_;
 };
 
