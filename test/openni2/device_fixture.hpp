@@ -18,8 +18,8 @@
 
 namespace pf::openni2 {
 
-/// The virtual camera of this process. The module stays loaded for ever, so that what it was told
-/// outlives a restart of the library.
+/// The virtual camera of this process. The module stays loaded, so that its settings outlive a
+/// restart of the library.
 inline VirtualDevice& virtualDevice(int number = 0) {
   static void* const module = dlopen(POSEFUSION_VIRTUAL_DRIVER, RTLD_NOW | RTLD_NODELETE);
   if (module == nullptr) throw std::runtime_error(dlerror());
@@ -27,7 +27,7 @@ inline VirtualDevice& virtualDevice(int number = 0) {
   return *reinterpret_cast<Getter>(dlsym(module, "posefusionVirtualDevice"))(number);
 }
 
-/// Makes the camera behave well again, whatever the test before has told it.
+/// Resets the camera to its normal behaviour, whatever the test before has set.
 inline void resetVirtualDevice(int number) {
   VirtualDevice& device = virtualDevice(number);
   for (auto* flag : {&device.stalled, &device.refuses_open, &device.refuses_modes,

@@ -2,7 +2,7 @@
 #include <dlfcn.h>
 
 // OpenNI2 loses memory each time that it is started and stopped (9 kB with these drivers). With its
-// drivers kept in memory, the leak checker can tell what they lost from what we lose.
+// drivers kept in memory, the leak checker can separate their leaks from ours.
 namespace {
 [[maybe_unused]] void* const g_virtual =
     dlopen(POSEFUSION_VIRTUAL_DRIVER, RTLD_NOW | RTLD_NODELETE);

@@ -92,7 +92,7 @@ class DriverNodelet : public DeviceTest {
     return call.response;
   }
 
-  /// The last diagnostics say this, at this level, within ten seconds.
+  /// Whether the last diagnostics have this text and level within ten seconds.
   testing::AssertionResult diagnosed(int level, const std::string& text) {
     std::string last = "nothing";
     const bool found = eventually([&] {

@@ -36,7 +36,7 @@ TEST_F(OpenDevice, NoFrameComesAfterItIsClosed) {
   EXPECT_EQ(keeper.count(StreamKind::color) + keeper.count(StreamKind::depth), frames);
 }
 
-TEST_F(OpenDevice, AsksForRegistrationSyncAndNoMirroring) {
+TEST_F(OpenDevice, RequestsRegistrationSyncAndNoMirroring) {
   FrameKeeper keeper;
   const Device device({}, keeper.sink());
   EXPECT_EQ(virtualDevice().registration, 1);
@@ -48,7 +48,7 @@ TEST_F(OpenDevice, AsksForRegistrationSyncAndNoMirroring) {
   EXPECT_TRUE(device.warnings().empty());
 }
 
-TEST_F(OpenDevice, AsksForNeitherRegistrationNorSyncWhenTold) {
+TEST_F(OpenDevice, RequestsNeitherRegistrationNorSyncWhereDisabled) {
   DeviceSettings settings;
   settings.depth_registration = settings.frame_sync = false;
   FrameKeeper keeper;
@@ -60,7 +60,7 @@ TEST_F(OpenDevice, AsksForNeitherRegistrationNorSyncWhenTold) {
   EXPECT_FALSE(device.isSynchronised());
 }
 
-TEST_F(OpenDevice, KnowsWhoAndWhatItIs) {
+TEST_F(OpenDevice, ReportsItsIdentityAndItsStreams) {
   FrameKeeper keeper;
   const Device device({}, keeper.sink());
   EXPECT_EQ(device.identity().uri, "virtual/0");
@@ -104,7 +104,7 @@ TEST_F(OpenDevice, StreamsInAnotherMode) {
   }
 }
 
-TEST_F(OpenDevice, TellsTheTemperatureWhereThereIsOne) {
+TEST_F(OpenDevice, ReportsTheTemperatureWhereThereIsOne) {
   FrameKeeper keeper;
   const Device device({}, keeper.sink());
   EXPECT_FALSE(device.temperature_c());
@@ -150,7 +150,7 @@ TEST_F(OpenDevice, HoldsTheAutoExposureAtItsLimit) {
   EXPECT_FALSE(device.limitExposure()) << "once";
 }
 
-TEST_F(OpenDevice, SaysThatItHasNoExposureSettings) {
+TEST_F(OpenDevice, ReportsThatItHasNoExposureSettings) {
   virtualDevice().has_camera_settings = false;
   FrameKeeper keeper;
   Device device({}, keeper.sink());

@@ -94,7 +94,7 @@ TEST_F(DeviceFile, PlaysAsFastAsItWasRecordedAndEnds) {
   EXPECT_TRUE(device.apply({}).empty());
 }
 
-TEST_F(DeviceFile, IsRepeatedWhenTold) {
+TEST_F(DeviceFile, IsRepeatedOnRequest) {
   FrameKeeper live;
   record(live, 30);
   FrameKeeper played;
@@ -142,7 +142,7 @@ TEST_F(DeviceFile, CanBeEndedAtOnce) {
   }
 }
 
-TEST_F(DeviceFile, SaysWhyItCannotBeRecorded) {
+TEST_F(DeviceFile, ReportsWhyItCannotBeRecorded) {
   FrameKeeper keeper;
   Device device({}, keeper.sink());
   const std::string missing = (folder_ / "no/such/folder.oni").string();
@@ -154,7 +154,7 @@ TEST_F(DeviceFile, SaysWhyItCannotBeRecorded) {
   EXPECT_EQ(device.stopRecording(), "");
 }
 
-TEST_F(DeviceFile, SaysWhyItCannotBePlayed) {
+TEST_F(DeviceFile, ReportsWhyItCannotBePlayed) {
   const auto error = [&] {
     return errorOf([&] { Device(playing(1, false), [](const SensorFrame&) {}); });
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the driver publishes, and what it does when asked.
+// What the driver publishes, and its services.
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <sensor_msgs/SetCameraInfo.h>
 

@@ -39,7 +39,7 @@ TEST_F(DriverNodelet, OpensASilentCameraAgain) {
   EXPECT_TRUE(streams(3));
 }
 
-TEST_F(DriverNodelet, SaysWhichModesThereAre) {
+TEST_F(DriverNodelet, ListsItsModes) {
   set("color_mode", "800x600@30");
   load();
   EXPECT_TRUE(diagnosed(DiagnosticStatus::ERROR, "640x480@30 RGB"));
@@ -57,9 +57,8 @@ TEST_F(DriverNodelet, StaysIdleWithAnImpossibleParameterAndLeavesTheManagerAlive
   EXPECT_TRUE(streams(2));
 }
 
-// The answer of a service may come before its callback has returned: who unloads then leaves the
-// last reference with the thread of the callback. Without the QueueKeeper this crashes now and
-// then.
+// The answer of a service may come before its callback has returned: unloading then leaves the last
+// reference with the thread of the callback. Without the QueueKeeper this crashes now and then.
 TEST_F(DriverNodelet, GoesWhileAServiceIsCalled) {
   for (int i = 0; i < 10; ++i) {
     load();

@@ -54,7 +54,7 @@ class UsbAccess : public testing::Test {
     fs::permissions(node, fs::perms(mode));
   }
   std::string ask() {
-    const WithoutRights nobody;
+    const WithoutRights user;
     return missingUsbPermission((root_ / "sysfs").string(), (root_ / "nodes").string());
   }
 

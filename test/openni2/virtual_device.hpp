@@ -10,8 +10,8 @@
 namespace pf::openni2 {
 
 /// A virtual camera, served to the real OpenNI2 library by a driver module made for tests only. A
-/// test in the same process reaches it through virtualDevice(): it tells the camera how to behave
-/// and reads what the library asked of it.
+/// test in the same process reaches it through virtualDevice(), to set the camera's behaviour and
+/// to read what the library requested.
 struct VirtualDevice {
   // How it behaves. May change at any time.
   std::atomic<bool> stalled{false};  ///< sends nothing
@@ -26,11 +26,11 @@ struct VirtualDevice {
   std::atomic<bool> refuses_sync{false};
   std::atomic<bool> keeps_mirroring{false};
   std::atomic<bool> has_camera_settings{true};
-  std::atomic<int> notify_ms{0};            ///< time it takes to tell its properties to a recorder
+  std::atomic<int> notify_ms{0};  ///< time it takes to report its properties to a recorder
   std::atomic<int> automatic_exposure{20};  ///< what its auto exposure chooses
-  std::atomic<int> temperature_c100{0};     ///< hundredths of degrees; 0: tells none
+  std::atomic<int> temperature_c100{0};     ///< hundredths of degrees; 0: reports none
 
-  // What was asked of it; -1: nothing.
+  // What the library requested; -1: nothing.
   std::atomic<int> registration{-1};
   std::atomic<int> sync{-1};
   std::array<std::atomic<int>, 2> mirroring{-1, -1};  ///< colour, depth

@@ -117,7 +117,7 @@ class VirtualDriver : public oni::driver::DriverBase {
   }
   void disableFrameSync(void*) override {}
 
-  /// Unplugged cameras can be told so at any time, also while no library runs.
+  /// Unplugging can be reported at any time, also while no library runs.
   void shutdown() override {
     for (auto& device : g_devices) device.plug = [&device](bool in) { device.plugged = in; };
   }

@@ -164,8 +164,8 @@ void VirtualStream::run() {
   int index = static_cast<int>((Clock::now() - started_) / period) + 1;
   for (; running_; ++index) {
     std::this_thread::sleep_until(started_ + index * period);
-    // Counted before the flags are read: who stalls the camera and then sees none under way knows
-    // that none comes.
+    // Counted before the flags are read: after a test has stalled the camera and sees no frame
+    // under way, none will come.
     ++device_.under_way;
     sendUnlessSilent(index);
     --device_.under_way;

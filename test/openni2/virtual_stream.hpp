@@ -13,7 +13,7 @@
 
 namespace pf::openni2 {
 
-/// The modes of the sensor, as OpenNI2 wants them.
+/// The modes of the sensor, as OpenNI2 requires them.
 const std::vector<OniVideoMode>& virtualModes(OniSensorType sensor);
 
 /// One stream of the virtual camera, with a thread that sends its frames in real time.

@@ -55,7 +55,7 @@ inline const pf::SimulatedSequence& emptyRoom() {
 
 inline int outcome(const TrackingStatusMsg& status) { return status.outcome; }
 
-/// What a trajectory.txt says besides comments.
+/// The poses of a trajectory.txt, without comments.
 inline std::string posesIn(const std::string& file) {
   std::istringstream lines(pf::readFile(file));
   std::string line, poses;

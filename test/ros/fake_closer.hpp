@@ -10,8 +10,7 @@
 
 namespace posefusion_ros {
 
-/// Something that is taken for a loop closer, and answers when told to: without finding anything,
-/// or what it is told to find.
+/// Takes the place of the loop closer and answers on request: with nothing, or with a given result.
 class FakeCloser {
  public:
   explicit FakeCloser(Chain& chain) {

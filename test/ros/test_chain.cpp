@@ -29,7 +29,7 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   for (int i = 0; i < sequence.frameCount(); ++i) {
     const auto made = sequence.frame(i);
     frames.push_back(made.frame);
-    // Missed and fused at first; between detections joints are carried.
+    // The person is missed and fused at first; between detections its joints are carried.
     if (i >= 4 && i % 2 == 0) people.push_back(made.people);
   }
   for (const int i : {9, 10}) cv::GaussianBlur(frames[i].color, frames[i].color, {}, 8);
@@ -71,7 +71,7 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBit) {
   }
   EXPECT_EQ(outcomes[9], TrackingStatusMsg::BLURRED);
   EXPECT_EQ(outcomes[10], TrackingStatusMsg::FORCED);
-  EXPECT_GT(frames_with_mapped_people, 2) << "the map was told about those who were missed";
+  EXPECT_GT(frames_with_mapped_people, 2) << "the map got the masks of people missed before";
   EXPECT_GE(expected.size(), frames.size() - 2) << "all but the blurred frames";
   ASSERT_TRUE(chain.call("save_map").success);
   // The offline runner writes its files so.
@@ -91,11 +91,11 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBitWithADetectorsMaskToo) {
   chain.set("pose/embedded_model", model);
   chain.set("output", folder.str());
   std::mutex mutex;
-  std::map<ros::Time, MovingObjectsMsg> told;
+  std::map<ros::Time, MovingObjectsMsg> published;
   const boost::function<void(const MovingObjectsMsg::ConstPtr&)> note =
       [&](const MovingObjectsMsg::ConstPtr& message) {
         const std::lock_guard<std::mutex> lock(mutex);
-        told[message->header.stamp] = *message;
+        published[message->header.stamp] = *message;
       };
   const auto subscriber =
       chain.handle().subscribe<MovingObjectsMsg>(topics::kMovingObjects, 100, note);
@@ -118,10 +118,10 @@ TEST(Chain, LosslessIsTheOfflineChainToTheBitWithADetectorsMaskToo) {
   EXPECT_GT(masked, 0);
   EXPECT_TRUE(Chain::waitUntil([&] {
     const std::lock_guard<std::mutex> lock(mutex);
-    return told.size() >= moving.size();
-  })) << told.size();
+    return published.size() >= moving.size();
+  })) << published.size();
   for (const auto& [stamp, objects] : moving) {
-    const MovingObjectsMsg& message = told[stamp];
+    const MovingObjectsMsg& message = published[stamp];
     EXPECT_EQ(message.header.frame_id, "map");
     ASSERT_EQ(message.objects.size(), objects.size()) << stamp;
     for (std::size_t k = 0; k < objects.size(); ++k) {
@@ -167,7 +167,7 @@ TEST(Chain, PassesTheVerySameMessagesOn) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(seen[topics::kSharpColor][i], sent[i].color.get());
     EXPECT_EQ(seen[topics::kSharpDepth][i], sent[i].depth.get());
-    EXPECT_EQ(seen[topics::kStaticDepth][i], sent[i].depth.get()) << "nobody there: nothing copied";
+    EXPECT_EQ(seen[topics::kStaticDepth][i], sent[i].depth.get()) << "no person: nothing copied";
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What fusion knows of its depth camera: asked for, kept from session to session, told.
+// The calibration of fusion's depth camera: requested, kept from session to session, published.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -70,7 +70,7 @@ TEST_F(ChainCalibration, TooFewKeyframesAreNamed) {
   EXPECT_FALSE(fs::exists(kept())) << "nothing was learned";
 }
 
-TEST_F(ChainCalibration, WhatIsLearnedIsToldAndKept) {
+TEST_F(ChainCalibration, WhatIsLearnedIsPublishedAndKept) {
   FakeCloser closer(*chain);
   closer.finds([](const pf::LoopQuestion& question) {
     pf::LoopAnswer answer;
@@ -95,7 +95,7 @@ TEST_F(ChainCalibration, WhatIsLearnedIsToldAndKept) {
   EXPECT_EQ(diagnostics.value("fusion", "depth learned anew"), "1");
 }
 
-TEST_F(ChainCalibration, WithoutAFrameItIsSaidSoon) {
+TEST_F(ChainCalibration, WithoutAFrameItFailsSoon) {
   ASSERT_TRUE(chain->load());
   process(0);
   const auto answer = chain->call("calibrate");
@@ -105,7 +105,7 @@ TEST_F(ChainCalibration, WithoutAFrameItIsSaidSoon) {
   EXPECT_NE(chain->call("calibrate").message.find("paused"), std::string::npos);
 }
 
-TEST_F(ChainCalibration, TheEndDoesNotWaitForWhoAsks) {
+TEST_F(ChainCalibration, UnloadingDoesNotWaitForTheCaller) {
   ASSERT_TRUE(chain->load());
   process(0);
   std_srvs::Trigger trigger;
@@ -120,7 +120,7 @@ TEST_F(ChainCalibration, TheEndDoesNotWaitForWhoAsks) {
   }
 }
 
-TEST_F(ChainCalibration, WhatDoesNotLearnSaysWhy) {
+TEST_F(ChainCalibration, WhatDoesNotLearnReportsWhy) {
   chain->set("calibration/mode", std::string("frozen"));
   ASSERT_TRUE(chain->load());
   process(0);
@@ -130,7 +130,7 @@ TEST_F(ChainCalibration, WhatDoesNotLearnSaysWhy) {
       << answer.message;
 }
 
-TEST_F(ChainCalibration, WithoutALoopCloserItIsSaid) {
+TEST_F(ChainCalibration, WithoutALoopCloserItFails) {
   chain->set("closer_timeout_s", 0.1);
   ASSERT_TRUE(chain->loadWithoutCloser());
   process(0);
@@ -206,7 +206,7 @@ TEST_F(ChainCalibration, WhatDoesNotFitIsLeftOut) {
   EXPECT_FALSE(inSavedMap());
 }
 
-TEST_F(ChainCalibration, AFileThatWasAskedForHasToFit) {
+TEST_F(ChainCalibration, AFileThatWasNamedHasToFit) {
   pf::DepthCalibration other = smallError();
   other.camera.fx *= 1.3;
   pf::saveCalibration(folder / "other.yaml", other);

@@ -127,7 +127,8 @@ TEST(ChainCloser, ThePathFollowsCorrections) {
 TEST(ChainCloser, OthersSeeQuestionsAndAnswersAsMessages) {
   Chain chain("seen");
   setLoopy(chain);
-  // Else constraints are measured anew once depth was corrected: questions without a keyframe.
+  // Otherwise constraints are measured again once depth was corrected, by questions without a
+  // keyframe.
   chain.set("calibration/mode", std::string("frozen"));
   std::mutex mutex;
   std::vector<KeyframeMsg> questions;
@@ -173,7 +174,7 @@ TEST(ChainCloser, OthersSeeQuestionsAndAnswersAsMessages) {
   EXPECT_GT(loops, 0U);
 }
 
-TEST(ChainCloser, OneThatIsMissingIsCountedAndOneThatComesIsTold) {
+TEST(ChainCloser, OneThatIsMissingIsCountedAndOneThatComesGetsAllKeyframes) {
   Chain chain("missing");
   setLoopy(chain);
   chain.set("closer_timeout_s", 0.2);
@@ -208,7 +209,7 @@ TEST(ChainCloser, OneThatDoesNotAnswerIsWaitedForOnceUntilItDoes) {
   closer.answers(true);
   const int asked = closer.asked();
   for (; next < 4 * kThere && closer.asked() < asked + 3; ++next) process(chain, next);
-  // What was asked before and becomes due is given up yet.
+  // Questions asked before are still given up when they become due.
   for (int i = 0; i < 12; ++i) process(chain, next++);
   const auto settled = chain.statuses().back().unanswered;
   for (int i = 0; i < kThere; ++i) process(chain, next++);
@@ -231,7 +232,7 @@ TEST(ChainCloser, FusionGoesWhileItWaitsForAnAnswer) {
   EXPECT_TRUE(chain.hasLostFusion());
 }
 
-TEST(ChainCloser, LiveNobodyWaits) {
+TEST(ChainCloser, LiveNothingWaits) {
   Chain chain("live_stalled");
   setLoopy(chain);
   chain.set("lossless", false);
@@ -247,7 +248,7 @@ TEST(ChainCloser, LiveNobodyWaits) {
   chain.unload();
 }
 
-TEST(ChainCloser, ItGoesWhileItWorksAndTheNextOneIsToldOfAllKeyframes) {
+TEST(ChainCloser, ItGoesWhileItWorksAndTheNextOneGetsAllKeyframes) {
   Chain chain("reloaded");
   setLoopy(chain);
   chain.set("closer_timeout_s", 600.0);  // an answer that was lost is not waited for

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the chain says of itself on /diagnostics.
+// What the chain reports on /diagnostics.
 #include <gtest/gtest.h>
 
 #include "diagnostics_listener.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-TEST(ChainDiagnostics, TellTheFramesAndTheMap) {
+TEST(ChainDiagnostics, ReportTheFramesAndTheMap) {
   Chain chain("telling");
   const Diagnostics diagnostics(chain);
   ASSERT_TRUE(chain.load());
@@ -32,7 +32,7 @@ TEST(ChainDiagnostics, TellTheFramesAndTheMap) {
   EXPECT_GT(std::stoi(diagnostics.value("fusion", "surfels")), 1000);
 }
 
-TEST(ChainDiagnostics, ALostCameraIsAnErrorThatSaysSinceWhen) {
+TEST(ChainDiagnostics, ALostCameraIsAnErrorThatNamesSinceWhen) {
   Chain chain("losing");
   const Diagnostics diagnostics(chain);
   chain.set("tracking/lost_after_s", 0.033);
@@ -74,10 +74,10 @@ TEST(ChainDiagnostics, AnotherCameraIsAnErrorThatNamesBoth) {
     EXPECT_NE(status.reason.find(pf::describe(other)), std::string::npos) << status.reason;
   }
   ASSERT_TRUE(diagnostics.waitFor("fusion", "state", "lost"));
-  const DiagnosticStatus told = diagnostics.of("fusion");
-  EXPECT_EQ(told.level, DiagnosticStatus::ERROR);
+  const DiagnosticStatus diagnosis = diagnostics.of("fusion");
+  EXPECT_EQ(diagnosis.level, DiagnosticStatus::ERROR);
   for (const std::string& text : {pf::describe(of_map), pf::describe(other), std::string("~reset")})
-    EXPECT_NE(told.message.find(text), std::string::npos) << told.message;
+    EXPECT_NE(diagnosis.message.find(text), std::string::npos) << diagnosis.message;
   status = send(6, 1e-6);
   EXPECT_EQ(outcome(status), TrackingStatusMsg::FUSED) << status.reason << " (the map is there)";
   EXPECT_EQ(outcome(send(7, 5)), TrackingStatusMsg::BAD_INPUT);
@@ -85,7 +85,7 @@ TEST(ChainDiagnostics, AnotherCameraIsAnErrorThatNamesBoth) {
   EXPECT_EQ(outcome(send(8, 5)), TrackingStatusMsg::FUSED) << "a map of the new camera";
 }
 
-TEST(ChainDiagnostics, StampsOfAnotherClockAreAWarningThatSaysWhatToDo) {
+TEST(ChainDiagnostics, StampsOfAnotherClockAreAWarningThatNamesARemedy) {
   Chain chain("clocks_differ");
   const Diagnostics diagnostics(chain);
   ASSERT_TRUE(chain.load());
@@ -100,7 +100,7 @@ TEST(ChainDiagnostics, StampsOfAnotherClockAreAWarningThatSaysWhatToDo) {
   EXPECT_NE(diagnostics.value("blur_gate", "after the stamp, median (ms)"), "unknown");
 }
 
-TEST(ChainDiagnostics, ANodeletThatStaysIdleSaysWhy) {
+TEST(ChainDiagnostics, ANodeletThatStaysIdleReportsWhy) {
   Chain chain("idle");
   const Diagnostics diagnostics(chain);
   ros::param::set(chain.space() + "/segmenter/segmentation/margin_px", -1);

@@ -11,7 +11,7 @@ namespace {
 
 using pf::SimulatedSequence;
 
-TEST(Chain, EveryBadFrameGetsOneStatusThatSaysWhy) {
+TEST(Chain, EveryBadFrameGetsOneStatusWithTheReason) {
   Chain chain("bad");
   ASSERT_TRUE(chain.load());
   const SimulatedSequence& sequence = emptyRoom();
@@ -122,7 +122,7 @@ TEST(Chain, AMissingModelIsNamedInEachStatus) {
   EXPECT_EQ(chain.statuses().size(), 2U);
 }
 
-TEST(Chain, WithoutAModelItGoesOnWhereToldTo) {
+TEST(Chain, WithoutAModelItGoesOnWhereSetTo) {
   Chain chain("go_on");
   chain.set("pose/detector", std::string("network"));
   chain.set("pose/model", std::string("/nowhere/network.pb"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera that is lost for long: it maps on where nobody knows where that is, and comes home.
+// A camera that is lost for long maps a fragment of unknown pose, and returns to the map.
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses with their covariance, and where somebody says that a lost camera is.
+// Poses with their covariance, and a user's hint of the place of a lost camera.
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ class ChainHint : public testing::Test {
     const std::lock_guard<std::mutex> lock(mutex);
     said += message->msg + "\n";
   }
-  /// Shows frames until one is located; how far from the truth it is said to be then (m), or -1.
+  /// Shows frames until one is located; the error of its position (m), or -1.
   double errorWhenFound() {
     for (int i = 0; i < 60; ++i) {
       const TrackingStatusMsg status = process(i);
@@ -95,7 +95,7 @@ class ChainHint : public testing::Test {
   std::string said;
 };
 
-TEST_F(ChainHint, ALostCameraIsLookedForWhereItIsSaidToBe) {
+TEST_F(ChainHint, ALostCameraIsSearchedForAtTheHint) {
   say(hintAt(0, 0));
   const double error_m = errorWhenFound();
   EXPECT_TRUE(hasLogged("initialpose: the camera is looked for there too")) << said;
@@ -106,7 +106,7 @@ TEST_F(ChainHint, ALostCameraIsLookedForWhereItIsSaidToBe) {
   EXPECT_TRUE(hasLogged("initialpose: the camera is not lost: nothing changes")) << said;
 }
 
-TEST_F(ChainHint, AWrongPlaceIsNotBelieved) {
+TEST_F(ChainHint, AWrongPlaceIsRejected) {
   say(hintAt(7, -5));
   const double error_m = errorWhenFound();
   EXPECT_TRUE(hasLogged("initialpose: the camera is looked for there too")) << said;

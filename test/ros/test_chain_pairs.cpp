@@ -29,7 +29,7 @@ TEST(ChainPairs, InTwoNamespacesHearNothingOfEachOther) {
     EXPECT_EQ(l.reason, "");
     EXPECT_EQ(l.header.frame_id, "left_map");
     if (i % 2 == 1) continue;
-    // The other way round in time: a stamp of the other chain would be a jump.
+    // Backwards in time: a stamp of the other chain would be a jump.
     const auto r =
         right.process(seenBy("right_eye", restamped(toMessages(emptyRoom().frame(i).frame),
                                                     emptyRoom().stamp(i) - 500'000'000'000)));
@@ -79,7 +79,7 @@ TEST(ChainPairs, OfOneCameraFrameOnlyTheFirstSendsTransforms) {
   EXPECT_EQ(parents, std::set<std::string>{"first_map"});
 }
 
-TEST(ChainPairs, BesideADriverWithFramesOfItsOwnTheUserIsToldWhatToSet) {
+TEST(ChainPairs, BesideADriverWithFramesOfItsOwnTheDiagnosticsNameWhatToSet) {
   ros::NodeHandle handle;
   auto driver = handle.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
   tf2_msgs::TFMessage mount;
@@ -91,13 +91,13 @@ TEST(ChainPairs, BesideADriverWithFramesOfItsOwnTheUserIsToldWhatToSet) {
   const auto frame = [](int i) {
     return seenBy("driver_eye", toMessages(emptyRoom().frame(i).frame));
   };
-  for (const bool as_told : {false, true}) {
-    Chain chain(as_told ? "with_base" : "without_base");
-    if (as_told) chain.set("base_frame", std::string("driver_link"));
+  for (const bool has_base_frame : {false, true}) {
+    Chain chain(has_base_frame ? "with_base" : "without_base");
+    if (has_base_frame) chain.set("base_frame", std::string("driver_link"));
     ASSERT_TRUE(chain.load());
     ros::WallDuration(0.3).sleep();  // until it has heard the driver
     const std::string reason = chain.process(frame(0)).reason;
-    if (as_told) {
+    if (has_base_frame) {
       EXPECT_EQ(reason, "");
     } else {
       EXPECT_NE(reason.find("give base_frame:=driver_link"), std::string::npos) << reason;

@@ -90,7 +90,7 @@ class ChainRobot : public testing::Test {
   ros::Publisher odometry_, imu_;
 };
 
-TEST_F(ChainRobot, WhatTellsTheMotionIsBelieved) {
+TEST_F(ChainRobot, SensorsThatMeasureTheMotionAreUsed) {
   load("legs");
   walk(emptyRoom().frameCount());
   EXPECT_TRUE(diagnostics_->waitFor("fusion", "odometry believed", "yes"));

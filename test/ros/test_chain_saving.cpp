@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of a map: saved, emptied, begun anew.
+// Maps that are saved, emptied and begun again.
 #include <gtest/gtest.h>
 #include <posefusion/GetMap.h>
 #include <sys/resource.h>
@@ -37,7 +37,7 @@ class FullDisk {
   rlimit before_{};
 };
 
-TEST_F(ChainSaving, ResetKeepsTheMapAndSaveTellsWhere) {
+TEST_F(ChainSaving, ResetKeepsTheMapAndSaveReportsWhere) {
   load("services", folder / "out");
   std::uint64_t grown = 0;
   for (int i = 0; i < 3; ++i) grown = process(i).surfels;
@@ -111,18 +111,18 @@ TEST_F(ChainSaving, OnRequestOnlyNothingIsWrittenUnasked) {
 
 TEST_F(ChainSaving, FilesLieInTheMapFrameOfTf) {
   load("overlay", folder / "out");
-  std::vector<TrackingStatusMsg> told;
-  for (int i = 0; i < 12; ++i) told.push_back(process(i));
+  std::vector<TrackingStatusMsg> statuses;
+  for (int i = 0; i < 12; ++i) statuses.push_back(process(i));
   posefusion::GetMap query;
   ASSERT_TRUE(ros::service::call(chain->space() + "/fusion/get_map", query));
   chain->unload();
   const pf::Trajectory poses = pf::loadTrajectory(folder / "out/latest/trajectory.txt");
-  ASSERT_EQ(poses.size(), told.size());
+  ASSERT_EQ(poses.size(), statuses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto& saved = poses[i].T_world_camera.translation();
-    EXPECT_NEAR(saved.x(), told[i].pose.position.x, 1e-6) << i;
-    EXPECT_NEAR(saved.y(), told[i].pose.position.y, 1e-6) << i;
-    EXPECT_NEAR(saved.z(), told[i].pose.position.z, 1e-6) << i;
+    EXPECT_NEAR(saved.x(), statuses[i].pose.position.x, 1e-6) << i;
+    EXPECT_NEAR(saved.y(), statuses[i].pose.position.y, 1e-6) << i;
+    EXPECT_NEAR(saved.z(), statuses[i].pose.position.z, 1e-6) << i;
   }
   const pf::SurfelArrays map = pf::loadMap(folder / "out/latest/map.ply");
   const SurfelPoint* shown = surfelsOf(query.response.cloud);
@@ -144,7 +144,7 @@ TEST_F(ChainSaving, AnOutputThatCannotBeWrittenEndsTheStart) {
   chain->unload();
 }
 
-TEST_F(ChainSaving, WhatWasAskedForStaysAsItWasSaved) {
+TEST_F(ChainSaving, WhatWasSavedOnRequestStays) {
   chain.emplace("asked_for");
   chain->set("output", folder / "out");
   chain->set("maps_kept", 2);

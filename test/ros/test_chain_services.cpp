@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What may be asked of a chain that runs: other settings, the map.
+// Requests to a running chain: other settings, the map.
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
 #include <posefusion/GetMap.h>
@@ -28,7 +28,7 @@ class ChainServices : public testing::Test {
     return ros::service::call(chain.space() + "/" + nodelet + "/set_parameters", call);
   }
 
-  /// In force, as told on the latched topic.
+  /// The value in force, as published on the latched topic.
   double inForce(const std::string& nodelet, const std::string& name) {
     const auto config = ros::topic::waitForMessage<Config>(
         chain.space() + "/" + nodelet + "/parameter_updates", ros::Duration(10));
@@ -43,7 +43,7 @@ class ChainServices : public testing::Test {
   std::string statusOf(const std::string& nodelet) {
     const auto config = ros::topic::waitForMessage<Config>(
         chain.space() + "/" + nodelet + "/parameter_updates", ros::Duration(10));
-    if (!config) return "no values were told";
+    if (!config) return "no values were published";
     for (const auto& each : config->strs) {
       if (each.name == kSettingsStatus) return each.value;
     }
@@ -61,7 +61,7 @@ class ChainServices : public testing::Test {
   Chain chain{testing::UnitTest::GetInstance()->current_test_info()->name()};
 };
 
-TEST_F(ChainServices, SettingsChangeBetweenFramesAndAreToldToAll) {
+TEST_F(ChainServices, SettingsChangeBetweenFramesAndArePublished) {
   ASSERT_TRUE(chain.load());
   EXPECT_EQ(outcome(process(0)), TrackingStatusMsg::FUSED);
   ASSERT_TRUE(set("blur_gate", "blur/threshold", 1e6));
@@ -105,7 +105,7 @@ TEST_F(ChainServices, AnEditorMaySendTheStatusBack) {
   EXPECT_FALSE(ros::param::has(chain.space() + "/blur_gate/" + kSettingsStatus));
 }
 
-TEST_F(ChainServices, TheMapIsThereForWhoComesLate) {
+TEST_F(ChainServices, TheMapIsThereForLateSubscribers) {
   ASSERT_TRUE(chain.load());
   EXPECT_FALSE(map(0).success) << "there is none yet";
   TrackingStatusMsg status;

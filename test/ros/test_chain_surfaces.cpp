@@ -78,10 +78,10 @@ class Viewer {
   ros::Subscriber mesh_, grid_;
 };
 
-TEST_F(ChainSurfaces, MeshAndGridComeToWhoListensAndFollowTheMap) {
+TEST_F(ChainSurfaces, MeshAndGridComeToSubscribersAndFollowTheMap) {
   map(12);
   const Viewer viewer(*chain);
-  ASSERT_TRUE(viewer.hasBoth()) << "no frame comes: they are made for who begins to listen";
+  ASSERT_TRUE(viewer.hasBoth()) << "no frame comes: they are made for a new subscriber";
   const std::size_t before = viewer.triangles();
   for (const auto& [id, marker] : viewer.shown()) {
     EXPECT_EQ(marker.header.frame_id, "map");
@@ -122,7 +122,7 @@ TEST_F(ChainSurfaces, AnEmptiedMapTakesTheOldMeshAway) {
   EXPECT_TRUE(Chain::waitUntil([&] { return viewer.triangles() < before; }));
 }
 
-TEST(SurfaceOutput, NoSnapshotIsTakenForNobodyAndNoneBeforeItIsDue) {
+TEST(SurfaceOutput, NoSnapshotIsTakenWithoutSubscribersOrBeforeItIsDue) {
   ros::NodeHandle handle("/surface_output");
   int wanted = 0, taken = 0;
   const auto take = [&](const ros::Time&) -> std::shared_ptr<const MapSnapshot> {
@@ -153,7 +153,7 @@ TEST(SurfaceOutput, NoSnapshotIsTakenForNobodyAndNoneBeforeItIsDue) {
   output.offer(ros::Time(1), give);
   EXPECT_EQ(taken, 2) << "what was not had is still due";
   EXPECT_TRUE(Chain::waitUntil([&] {
-    output.offer(ros::Time(2), give);  // nothing, however often it is asked
+    output.offer(ros::Time(2), give);  // nothing, however often it is requested
     output.offer(ros::Time(3.5), give);
     return taken > 2;
   }));
@@ -179,7 +179,7 @@ TEST_F(ChainSurfaces, TheMeshIsSavedOnRequest) {
       << saved.message;
 }
 
-TEST_F(ChainSurfaces, AMeshThatCannotBeWrittenIsToldAndTheChainGoesOn) {
+TEST_F(ChainSurfaces, AMeshThatCannotBeWrittenIsReportedAndTheChainGoesOn) {
   map(12);
   std::filesystem::rename(folder / "out", folder / "gone");
   std::ofstream(folder / "out") << "a file in the way";

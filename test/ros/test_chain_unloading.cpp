@@ -91,7 +91,7 @@ TEST(ChainUnloading, SkeletonsDoNotOutliveTheirPeople) {
     });
   };
   chain.process(toMessages(emptyRoom().frame(0).frame));
-  EXPECT_TRUE(isCleared(1)) << "nobody is there";
+  EXPECT_TRUE(isCleared(1)) << "no person is there";
   ASSERT_TRUE(chain.call("reset").success);
   EXPECT_TRUE(isCleared(2)) << "the map was emptied";
   chain.unload("segmenter");

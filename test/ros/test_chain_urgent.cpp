@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lost camera does not wait for what the loop closer was asked before.
+// A lost camera does not wait for the earlier questions to the loop closer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ pf::Config closeKeyframes() {
   return config;
 }
 
-/// What a mapper asks while it maps the room to and fro, never answered, and then lost in it.
-std::vector<pf::LoopQuestion> askedByOneWhoGetsLost() {
+/// The questions of a mapper that maps the room to and fro without answers, and is then lost in it.
+std::vector<pf::LoopQuestion> questionsOfALostMapper() {
   pf::Mapper mapper(closeKeyframes());
   std::vector<pf::LoopQuestion> asked;
   std::int64_t stamp_ns = 0;
@@ -43,7 +43,7 @@ std::vector<pf::LoopQuestion> askedByOneWhoGetsLost() {
 }
 
 TEST(ChainUrgent, ALostCameraIsAnsweredBeforeFiftyQuestionsThatWait) {
-  std::vector<pf::LoopQuestion> questions = askedByOneWhoGetsLost();
+  std::vector<pf::LoopQuestion> questions = questionsOfALostMapper();
   ASSERT_GE(questions.size(), kWaiting) << "the test needs keyframes";
   ASSERT_NE(questions.back().place, nullptr) << "the test needs a lost camera";
   questions.back().is_urgent = true;

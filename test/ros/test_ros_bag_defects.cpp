@@ -8,7 +8,7 @@
 
 namespace posefusion_ros {
 
-/// Recorded by a posefusion whose message was another.
+/// The message of another version of posefusion.
 struct OldPeople {};
 
 }  // namespace posefusion_ros
@@ -57,7 +57,7 @@ TEST_F(BagSourceTest, PeopleOfAnotherVersionAreRefused) {
   bag.write("/people", OldPeople());
   bag.close();
   const auto source = openInput(path());
-  EXPECT_EQ(readAll(*source).size(), 1U) << "who does not ask for them can read the rest";
+  EXPECT_EQ(readAll(*source).size(), 1U) << "without them the rest can be read";
   const std::string error = errorOf([&] { source->people(); });
   EXPECT_TRUE(has(error, path())) << error;
   EXPECT_TRUE(has(error, "/people has messages posefusion/People of another version")) << error;

@@ -109,7 +109,7 @@ TEST(CalibrationStore, WhatIsWrongNamesTheFile) {
             std::string::npos);
 }
 
-TEST(CalibrationStore, IsBelowTheFolderOfRosUnlessToldOtherwise) {
+TEST(CalibrationStore, IsBelowTheFolderOfRosByDefault) {
   const Variable home("HOME", "/tmp/me");
   {
     const Variable ros("ROS_HOME", "/tmp/ros");

@@ -25,7 +25,7 @@ class CalibrationWaitTest : public testing::Test {
   CalibrationWait wait{now, start};
 };
 
-TEST_F(CalibrationWaitTest, WaitsForAStepAndTellsIt) {
+TEST_F(CalibrationWaitTest, WaitsForAStepAndReportsIt) {
   EXPECT_EQ(look(milliseconds(50)), "");
   now.frames = 130;
   EXPECT_EQ(look(seconds(1)), "");
@@ -39,7 +39,7 @@ TEST_F(CalibrationWaitTest, ADoubtIsNoSuccess) {
   EXPECT_EQ(look(milliseconds(50)), "error: too few pairs");
 }
 
-TEST_F(CalibrationWaitTest, SaysWhoDidNotAnswer) {
+TEST_F(CalibrationWaitTest, ReportsThatTheLoopCloserDidNotAnswer) {
   ++now.unanswered;
   EXPECT_NE(look(milliseconds(50)).find("error: the loop closer has left"), std::string::npos);
 }

@@ -16,7 +16,7 @@ TEST(ClockDefect, IsSilentWhereStampsAreOfRosTime) {
   }
 }
 
-TEST(ClockDefect, SaysWhatToDoWhereABagIsPlayedWithoutItsTime) {
+TEST(ClockDefect, NamesTheRemedyWhereABagIsPlayedWithoutItsTime) {
   const std::string said = clockDefect(ros::Time(1'305'031'102), ros::Time(1'795'455'175), false);
   EXPECT_NE(said.find("490424073 s behind ROS time"), std::string::npos) << said;
   EXPECT_NE(said.find("use_sim_time true"), std::string::npos) << said;
@@ -25,7 +25,7 @@ TEST(ClockDefect, SaysWhatToDoWhereABagIsPlayedWithoutItsTime) {
       << "and does not throw";
 }
 
-TEST(ClockDefect, SaysWhatToDoWhereTheClockIsMissing) {
+TEST(ClockDefect, NamesTheRemedyWhereTheClockIsMissing) {
   const std::string said = clockDefect(ros::Time(1'305'031'102), ros::Time(), true);
   EXPECT_NE(said.find("no /clock has come"), std::string::npos) << said;
   EXPECT_NE(said.find("--clock"), std::string::npos) << said;
@@ -41,7 +41,7 @@ TEST(GrowingPause, GrowsUpToFiveMinutes) {
   EXPECT_EQ(said, (std::vector<int>{0, 5, 15, 35, 75, 155, 315, 615, 915, 1215, 1515, 1815}));
 }
 
-TEST(GrowingPause, WhatIsNewIsSaidAtOnce) {
+TEST(GrowingPause, WhatIsNewIsReportedAtOnce) {
   GrowingPause pause;
   const GrowingPause::Time now = std::chrono::steady_clock::now();
   EXPECT_TRUE(pause.isDue(now, "no depth"));

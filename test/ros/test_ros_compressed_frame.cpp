@@ -128,7 +128,7 @@ TEST(CompressedFrame, MetresComeBackWithinHalfAStepAndHolesAsHoles) {
   EXPECT_LT(cv::norm(back, metres, cv::NORM_INF), 0.51 * kMetricDepthStep_m);
 }
 
-TEST(CompressedFrame, AnotherUnitOfDepthIsToldAlong) {
+TEST(CompressedFrame, AnotherUnitOfDepthIsSentAlong) {
   const auto packed = packFrame(someSet(), 2e-3, kQuality);
   EXPECT_EQ(packed.depth_unit_m, 2e-3);
   const auto frame = unpack(packed);
@@ -181,7 +181,7 @@ TEST(CompressedFrame, OfCutImagesNothingIsUsed) {
   EXPECT_TRUE(has(unpackError(crossed), "a compressed depth image is not a whole 16-bit PNG"));
 }
 
-TEST(CompressedFrame, SizesAndUnitsHaveToBeThoseTold) {
+TEST(CompressedFrame, SizesAndUnitsHaveToBeThoseOfTheMessage) {
   auto frame = pack(someSet());
   frame.camera_info = *infoOf(64, 48);
   EXPECT_EQ(unpackError(frame), "colour is 48x32, expected the 64x48 of its camera_info");

@@ -232,7 +232,7 @@ TEST(RosConversions, EachLensModelGoesThereAndBack) {
   EXPECT_EQ(info.D.size(), 4U);
   EXPECT_EQ(toCamera(info, false), camera);
   EXPECT_FALSE(toCamera(info, true).isDistorted());
-  // Drivers say so of images that they rectify.
+  // Drivers send this with images that they rectify.
   info.D.assign(4, 0.0);
   EXPECT_FALSE(toCamera(info, false).isDistorted());
 }

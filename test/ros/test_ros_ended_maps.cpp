@@ -37,7 +37,7 @@ TEST_F(EndedMapsTest, TheOldestGo) {
   EXPECT_TRUE(fs::exists(third + "/map.pfdb"));
 }
 
-TEST_F(EndedMapsTest, WhatSomebodyElseHasPutThereStays) {
+TEST_F(EndedMapsTest, OtherFilesStay) {
   const std::string path = end();
   std::ofstream(path + "/notes.txt") << "the user's";
   std::ofstream(path + "/trajectory.txt") << "the user's too";
@@ -47,7 +47,7 @@ TEST_F(EndedMapsTest, WhatSomebodyElseHasPutThereStays) {
   EXPECT_EQ(pf::readFile(path + "/trajectory.txt"), "the user's too");
 }
 
-TEST_F(EndedMapsTest, AMapThatSomebodyHasGoneOnInStaysWhole) {
+TEST_F(EndedMapsTest, AMapThatWasContinuedStaysWhole) {
   const std::string changed = end(), replaced = end();
   std::ofstream(changed + "/map.pfdb", std::ios::app) << ", longer";
   fs::remove(replaced + "/map.pfdb");

@@ -55,7 +55,7 @@ TEST(InputImage, CompressedImagesGiveThePixelsThatWentIn) {
   }
 }
 
-TEST(InputImage, ThePngItselfTellsWhetherItHasAHeader) {
+TEST(InputImage, ThePngItselfShowsWhetherItHasAHeader) {
   const cv::Mat depth = noise(8, 12, CV_16UC1);
   for (const auto& message :
        {compressedDepth(depth, header()), plainDepth(depth, header(), ".png")}) {

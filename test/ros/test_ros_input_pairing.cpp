@@ -80,7 +80,7 @@ TEST_F(Pairing, EveryColourImageIsAccountedFor) {
   EXPECT_EQ(sets.size() + unused.size(), 60U - settings.queue_size);
 }
 
-TEST_F(Pairing, TellsWhatIsMissing) {
+TEST_F(Pairing, ReportsWhatIsMissing) {
   for (int i = 1; i <= 11; ++i) addPair(i);
   ASSERT_EQ(unused.size(), 1U);
   EXPECT_EQ(reasons[0], "no camera_info has come yet");

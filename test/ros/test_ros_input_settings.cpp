@@ -84,7 +84,7 @@ TEST(InputSettings, ParametersHoldOverTheFileAndTheFileOverTheDefaults) {
   EXPECT_EQ(Parameters(values, "/gate").config({"frame"}).frame.max_depth_m, 4.5);
 }
 
-TEST(InputSettings, DepthGoesAsColourGoesUnlessSaidOtherwise) {
+TEST(InputSettings, DepthIsTransportedAsColourByDefault) {
   InputSettings input;
   EXPECT_EQ(input.depthTransport(), "raw");
   input.image_transport = "compressed";

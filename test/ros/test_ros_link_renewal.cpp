@@ -8,7 +8,7 @@
 namespace posefusion_ros {
 namespace {
 
-/// A connection, and a clock that the test turns.
+/// A connection, and a clock that the test sets.
 class RenewalClockTest : public testing::Test {
  protected:
   void wait(double seconds) { now += std::chrono::milliseconds(std::lround(1e3 * seconds)); }
@@ -46,7 +46,7 @@ TEST_F(RenewalClockTest, AsSoonAsACutEndsItIsRenewedOnce) {
   EXPECT_FALSE(clock.isToLook(now));
 }
 
-TEST_F(RenewalClockTest, WhoHasNothingToSayIsAskedEverMoreSeldom) {
+TEST_F(RenewalClockTest, ASilentTopicIsRenewedEverMoreSeldom) {
   clock.heard(now);
   int renewals = 0;
   for (int i = 0; i < 1200; ++i, wait(0.05)) {  // a minute

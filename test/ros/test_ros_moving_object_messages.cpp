@@ -27,7 +27,7 @@ std_msgs::Header mapHeader() {
   return header;
 }
 
-TEST(MovingObjectMessages, TellWhereThingsAreAndWhereTheyGo) {
+TEST(MovingObjectMessages, HoldPlacesAndVelocities) {
   const auto message = toMessage({object(2, true, 0.5), object(9, false, 0)}, mapHeader());
   EXPECT_EQ(message.header.frame_id, "map");
   EXPECT_EQ(message.header.stamp, ros::Time(5, 6));

@@ -57,7 +57,7 @@ TEST(RosParameters, TheFileIsReadFirst) {
             std::string::npos);
 }
 
-TEST(RosParameters, WhatIsNotTheDefaultIsTold) {
+TEST(RosParameters, WhatIsNotTheDefaultIsListed) {
   Parameters p(someValues(), "/gate");
   p.config({"blur"});
   p.integer("queue_size", 7, {1, 10});

@@ -12,7 +12,7 @@ const ParentWatch::Time kNow;
 
 TEST(ParentWatch, OurOwnTransformIsNoConflict) {
   ParentWatch watch;
-  EXPECT_EQ(watch.conflict("camera", "map", "/me", kNow), "") << "nobody sends it";
+  EXPECT_EQ(watch.conflict("camera", "map", "/me", kNow), "") << "it has no sender";
   watch.hear("camera", "map", "/me", false, kNow);
   watch.hear("other_camera", "map", "/you", false, kNow);
   EXPECT_EQ(watch.conflict("camera", "map", "/me", kNow), "");
@@ -29,7 +29,7 @@ TEST(ParentWatch, AnotherParentOrSenderIs) {
   EXPECT_NE(same_frames.conflict("camera", "map", "/me", kNow), "");
 }
 
-TEST(ParentWatch, WhoHasStoppedIsForgottenButAFixedTransformHolds) {
+TEST(ParentWatch, ASenderThatHasStoppedIsForgottenButAFixedTransformHolds) {
   ParentWatch watch;
   watch.hear("camera", "left_map", "/you", false, kNow);
   EXPECT_EQ(watch.conflict("camera", "map", "/me", kNow + seconds(3)), "");

@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::seconds;
 
-TEST(ReplayProgress, TellsEveryFiveSecondsHowLongItTakes) {
+TEST(ReplayProgress, ReportsEveryFiveSecondsHowLongItTakes) {
   const ReplayProgress::Time begin = std::chrono::steady_clock::now();
   ReplayProgress progress(1000, begin);
   EXPECT_EQ(progress.after(50, begin + seconds(4)), "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the rviz display tells of a room, its size and its floor, and how much of it is drawn.
+// The size and the floor of a room that the rviz display finds, and how much of it is drawn.
 #include "../../src/viewer/room_fit.hpp"
 
 #include <gtest/gtest.h>

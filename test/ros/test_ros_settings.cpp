@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What dynamic_reconfigure is told of the settings, and what it may set.
+// The settings that dynamic_reconfigure shows and may set.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -93,7 +93,7 @@ TEST(RosSettings, ValuesComeBackAsTheyAreSent) {
   EXPECT_EQ(sent.fields, read.fields);
 }
 
-TEST(RosSettings, OneAloneIsSetAndAWholeNumberMayStandForANumber) {
+TEST(RosSettings, OneAloneIsSetAndAnIntegerIsTakenForANumber) {
   Config request;
   put(request.ints, "tracking/max_distance_m", 2);
   FusionSettings settings;

@@ -57,7 +57,7 @@ TEST(SkeletonMarkers, JointsWithTheDepthOfTheBackgroundAreLeftOut) {
 
 TEST(SkeletonMarkers, NoBoneIsLongerThanAPersonHasIt) {
   Scene scene;
-  scene.people.people[0].joints[0].u = 63;  // a joint of somebody else: 1.1 m to the side
+  scene.people.people[0].joints[0].u = 63;  // a joint of another person: 1.1 m to the side
   const auto lines = scene.lines();
   EXPECT_LT(lines.size(), 2 * pf::kSkeletonLines.size());
   for (std::size_t i = 0; i + 1 < lines.size(); i += 2) {

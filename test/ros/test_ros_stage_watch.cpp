@@ -12,7 +12,7 @@ using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 using std::chrono::milliseconds;
 
-/// A watch, and a clock that the test turns.
+/// A watch, and a clock that the test sets.
 class StageWatchTest : public testing::Test {
  protected:
   void pass(double latency_s = 0.05) { watch.passed(now, latency_s); }
@@ -91,7 +91,7 @@ TEST_F(StageWatchTest, LatencyIsThatOfTheLastFrames) {
   EXPECT_EQ(valueOf(status, "after the stamp, 99 % (ms)"), "200.0");
 }
 
-TEST_F(StageWatchTest, WhatTheStageTellsIsShownUntilItIsToldAnew) {
+TEST_F(StageWatchTest, WhatTheStageReportsIsShownUntilItsNextReport) {
   watch.set("people", "2");
   watch.tell(DiagnosticStatus::ERROR, "lost");
   pass();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Frames with stamps, at a clock that the test turns.
+/// Frames with stamps, by a clock that the test sets.
 class StampGuardTest : public testing::Test {
  protected:
   /// Comes `after_s` after the one before.

@@ -25,7 +25,7 @@ TEST(StateText, StandsAboveTheCameraInTheMapFrame) {
   EXPECT_EQ(text.color.a, 1);
 }
 
-TEST(StateText, TellsTheStateByWordsAndColour) {
+TEST(StateText, ShowsTheStateByWordsAndColour) {
   const auto good = toStateText(statusOf(TrackingStatusMsg::TRACKING), 0);
   const auto lost = toStateText(statusOf(TrackingStatusMsg::LOST), 12.4);
   const auto doubtful = toStateText(statusOf(TrackingStatusMsg::DOUBTFUL), 0);

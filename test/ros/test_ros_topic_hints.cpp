@@ -30,7 +30,7 @@ TEST(TopicHints, OurOwnTopicsAreNoCamera) {
   EXPECT_EQ(hint("/mask", kImage).find("/posefusion"), std::string::npos);
 }
 
-TEST(TopicHints, NoneOfTheTypeOrAnotherTypeIsSaid) {
+TEST(TopicHints, NoneOfTheTypeOrAnotherTypeIsReported) {
   EXPECT_EQ(hint("/x", "sensor_msgs/Imu"), "; no topic of type sensor_msgs/Imu is published");
   EXPECT_EQ(hint("/scan", kImage), "; it is published as a sensor_msgs/LaserScan");
 }

@@ -38,7 +38,7 @@ class TransformLookupTest : public testing::Test {
   std::string note;
 };
 
-TEST_F(TransformLookupTest, NobodyWhoSendsItHoldsUpOneFrameOnly) {
+TEST_F(TransformLookupTest, AMissingSenderHoldsUpOneFrameOnly) {
   for (const bool exact : {false, true}) {
     TransformLookup lookup(buffer, {0.5, 0.2, exact});
     const auto begin = std::chrono::steady_clock::now();

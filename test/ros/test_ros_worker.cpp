@@ -100,7 +100,7 @@ TEST(Worker, ATaskThatNeverRunsBreaksItsPromise) {
     worker.push(0);
     begun.get_future().get();
     task = worker.post([] {});
-    // The worker is told to stop while it is busy: the task behind must not be waited for for ever.
+    // The worker is stopped while it is busy: waiting for the task behind must end.
     std::thread opener([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       gate.set_value();
@@ -136,7 +136,7 @@ TEST(CreditWindow, WaitsWhileStatusesComeIn) {
   EXPECT_FALSE(window.waitBelow(1, duration<double>(1000.0), [] { return false; }));
 }
 
-TEST(LatencyMeter, TellsWithinWhichTimeAPartOfTheResultsCame) {
+TEST(LatencyMeter, GivesQuantilesOfTheLatency) {
   LatencyMeter meter;
   EXPECT_EQ(meter.quantile(0.5), 0.0);
   const LatencyMeter::Time start;
