@@ -68,7 +68,7 @@ struct RoomView {
   PinholeCamera camera = roomCamera();
   DepthField field{};       ///< what a user has to correct the depth by
   double noise = 1.0;       ///< times that of the sensor, windows averaged
-  double pose_error_m = 0;  ///< of the pose that is told
+  double pose_error_m = 0;  ///< of the pose that the view has
 };
 
 /// View `number` of a walk through the room: once around, looking at the walls from 1 to 5 m.

@@ -59,7 +59,7 @@ inline void makeThirdVersion(const std::string& path) {
   database.run("PRAGMA user_version=3");
 }
 
-/// The same, and the tables of version 2, which knew no retired keyframes. What they hold stays.
+/// As above, with the tables of version 2, which had no retired keyframes. What they hold stays.
 inline void makeSecondVersion(const std::string& path) {
   makeThirdVersion(path);
   runSql(path,
@@ -70,7 +70,7 @@ inline void makeSecondVersion(const std::string& path) {
          "DROP TABLE others; PRAGMA user_version=2");
 }
 
-/// The same of version 1, whose blocks had no fragment either.
+/// As above for version 1, whose blocks had no fragment either.
 inline void makeFirstVersion(const std::string& path) {
   makeSecondVersion(path);
   runSql(path,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Graphs whose truth is known.
+// Pose graphs with a known truth.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ inline Poses corridor() {
   return poses;
 }
 
-/// Two rounds that cross each other, each of 40 steps.
+/// Two circles that cross each other, each of 40 steps.
 inline Poses figureEight() {
   Poses poses;
   for (int i = 0; i <= 80; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small room, and cameras in it that are looked for.
+// A small room, and lost cameras in it.
 #pragma once
 
 #include <gtest/gtest.h>

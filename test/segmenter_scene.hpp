@@ -10,7 +10,7 @@ namespace pf {
 
 inline const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
 
-/// Depth of a body that stands at `z_m`, whose pixels are `shape`: it is no board, but round.
+/// Depth of a round body at `z_m` whose pixels are `shape`.
 inline void putBody(cv::Mat& depth_m, const cv::Mat& shape, float z_m, int centre_u) {
   for (int v = 0; v < shape.rows; ++v) {
     for (int u = 0; u < shape.cols; ++u) {

@@ -22,7 +22,7 @@ struct TrueFrame {
 
 /// The first frames of a scenario of the simulator; "empty_box" and "box_walker" are the small and
 /// fast ones. The map frame is the camera frame of frame 0. All frames are drawn at once; after
-/// that any thread may ask for them.
+/// that any thread may read them.
 class SimulatedSequence {
  public:
   /// `assignments` change values of the scenario: "depth.noise=false".

@@ -9,7 +9,7 @@
 
 namespace pf::simulator {
 
-/// A camera that moves as a function says.
+/// A camera that moves by a function.
 class FunctionPath : public CameraPath {
  public:
   explicit FunctionPath(std::function<Eigen::Isometry3d(double)> at) : at_(std::move(at)) {}
@@ -19,7 +19,7 @@ class FunctionPath : public CameraPath {
   std::function<Eigen::Isometry3d(double)> at_;
 };
 
-/// A robot that walks along two legs, the second one sideways, and falls where it is told.
+/// A robot that walks along two legs, the second one sideways, and falls where given.
 inline std::unique_ptr<CameraPath> walkingRobot(std::vector<Fall> falls = {}) {
   Robot spec;
   spec.waypoints = {{1, 1}, {5, 1}, {Eigen::Vector2d(5, 5), 0.0}};

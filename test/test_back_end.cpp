@@ -98,8 +98,8 @@ std::vector<Deformation> close(BackEnd& back_end, const std::vector<PoseConstrai
   return back_end.takeUp(std::move(graph), closed);
 }
 
-/// A round with a drift of 0.24 m: the camera is lost as it comes home, found at the first
-/// keyframe, and knows by its corners how it moved in between.
+/// A circle with a drift of 0.24 m: the camera is lost as it comes home and relocalised at the
+/// first keyframe; its corners give the motion in between.
 FusedFrame homeAfterARound(BackEnd& back_end) {
   constexpr double kDrift_m = 0.24;
   constexpr int kSteps = 20;
@@ -138,7 +138,7 @@ TEST(BackEnd, AWayThatIsNotMeasuredOrLeadsElsewhereClosesNothing) {
     BackEnd back_end{GraphConfig{}};
     FusedFrame home = homeAfterARound(back_end);
     home.carried.is_measured = measured;
-    if (measured) home.carried.T_map_camera = along(6.0);  // nobody walks so far in a loss
+    if (measured) home.carried.T_map_camera = along(6.0);  // too far for a walk during a loss
     const auto before = back_end.keyframePoses();
     back_end.add(home);
     EXPECT_TRUE(close(back_end, {}).empty());

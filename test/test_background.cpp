@@ -8,7 +8,7 @@
 namespace pf {
 namespace {
 
-/// What the map, a wall at `wall_m`, says of a frame that is a plane at `seen_m`.
+/// How a frame of a plane at `seen_m` compares with the map, a wall at `wall_m`.
 std::vector<Background> beforeWall(float wall_m, float seen_m, const DepthSensor& sensor) {
   RgbdFrame frame;
   frame.camera = smallCamera();
@@ -25,7 +25,7 @@ std::vector<Background> beforeWall(float wall_m, float seen_m, const DepthSensor
   return result;
 }
 
-TEST(CompareWithModel, WhatMayBeOneSurfaceIsForTheSensorToSay) {
+TEST(CompareWithModel, TheSensorDecidesWhatMayBeOneSurface) {
   // A decimetre before a wall 4 m away is nothing to a Kinect and a person to a time of flight
   // camera.
   DepthSensor precise;

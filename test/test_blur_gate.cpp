@@ -104,7 +104,7 @@ class Gate {
   std::int64_t stamp_ns_ = 1'000'000'000'000LL;
 };
 
-/// What the gate says of so many frames from the camera.
+/// The decisions of the gate on so many frames of the camera.
 template <typename Shoot>
 std::vector<BlurScore> feed(Gate& gate, int frames, const Shoot& shoot) {
   std::vector<BlurScore> scores;
@@ -229,7 +229,7 @@ TEST(BlurGate, FixedThresholdIsOnTheVarianceOfTheLaplacian) {
   EXPECT_EQ(score.threshold, 50.0);
 }
 
-TEST(BlurGate, AFrameThatPassesByForceSaysSo) {
+TEST(BlurGate, AFrameThatPassesByForceIsMarked) {
   BlurConfig config;
   config.max_gap_s = 0.1;
   config.threshold = 50;  // for good: nothing but force lets these pass

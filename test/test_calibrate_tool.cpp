@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_calibrate as a user runs it.
+// posefusion_calibrate from the command line.
 #include <gtest/gtest.h>
 
 #include <filesystem>

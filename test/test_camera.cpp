@@ -44,7 +44,7 @@ TEST(SameCamera, IsNoneOfAnotherSizeOrLensOrThatIsNoCamera) {
   }
 }
 
-TEST(SameCamera, IsDescribedWithAllThatTellsItFromAnother) {
+TEST(SameCamera, IsDescribedWithAllThatDistinguishesIt) {
   PinholeCamera other = camera();
   other.fx = 525.0175;
   EXPECT_EQ(describe(other), "640 x 480, fx 525.0175 fy 526 cx 319.5 cy 239.5");

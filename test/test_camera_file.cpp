@@ -61,7 +61,7 @@ TEST(CameraFile, SavedFileReadsBackAsTheSame) {
   EXPECT_EQ(loadCamera(folder / "c.yaml").sensor_kind, "active_stereo");
 }
 
-TEST(CameraFile, TheLensModelSaysWhatTheCoefficientsAre) {
+TEST(CameraFile, TheLensModelDefinesTheCoefficients) {
   TemporaryFolder folder;
   const auto load = [&](const std::string& lens) {
     return loadCamera(

@@ -25,7 +25,7 @@ const SimulatedSequence& room() {
 WorkingFrame frameOf(int view) {
   WorkingFrame frame;
   FrameConfig config;
-  config.shrink = 2;  // steps are a large part of the view: wanted coarse
+  config.shrink = 2;  // steps are a large part of the view: coarse on purpose
   frame.assign(room().frame(view * kStep).frame, cv::Mat(), config);
   return frame;
 }
@@ -86,7 +86,7 @@ TEST(KeyframePicture, KeepsTheDepthThatIsUsed) {
   EXPECT_EQ(seenWith(9.0), static_cast<int>(view.depth_mm.total()));
 }
 
-TEST(LoopCloser, FernsTellDepthsApartInTheWholeRange) {
+TEST(LoopCloser, FernsDistinguishDepthsInTheWholeRange) {
   LoopConfig config = quick();
   const auto unlike = [&](double max_depth_m, double z_m) {
     DepthSensor sensor;
@@ -125,7 +125,7 @@ TEST(LoopCloser, ComingBackGivesTrueConstraints) {
   EXPECT_LE(c.local, c.accepted);
 }
 
-TEST(LoopWorker, CountsGoOnWhereKeyframesAreToldAnew) {
+TEST(LoopWorker, CountsGoOnWhereKeyframesAreSentAnew) {
   LoopWorker worker(quick(), TrackingConfig{}, DepthSensor{});
   std::vector<KeyframeView> views;
   LoopAnswer last;
@@ -137,7 +137,7 @@ TEST(LoopWorker, CountsGoOnWhereKeyframesAreToldAnew) {
   };
   for (int i = 0; i < 5; ++i) last = add(i);
   ASSERT_GT(last.counts.accepted, 0U);
-  LoopQuestion anew;  // the camera was learned, say
+  LoopQuestion anew;  // as after the camera's field was learned
   anew.known = views;
   const LoopCounts after = worker.answer(anew).counts;
   EXPECT_EQ(after.accepted, last.counts.accepted);
@@ -171,7 +171,7 @@ TEST(LoopCloser, ComparesNoMoreThanIsEnough) {
 }
 
 TEST(LoopCloser, PosesInOtherFragmentsAreNotNear) {
-  // The coordinates say the same place; only the pictures may tell that it is.
+  // The coordinates are those of one place; only the pictures may confirm it.
   for (const int fragment : {0, 1}) {
     LoopCloser closer(quick(), TrackingConfig{}, DepthSensor{});
     for (int i = 0; i < kViews; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Command lines as a user types them: what is read, and what is said of a wrong one.
+// Command lines as a user types them: what is read, and the messages on wrong ones.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Program {
     app.addFlag("--slow", slow, "be slow")->needs(mode_option)->excludes(fast_option);
   }
 
-  /// Exit code, and what is said; 0: nothing.
+  /// The exit code, and in `said` the message; 0: none.
   int fault(const Words& words) {
     said.clear();
     try {
@@ -166,9 +166,10 @@ TEST(CommandLine, OptionsNeedAndExcludeOthers) {
   EXPECT_EQ(said, "--slow and --fast exclude each other");
 }
 
-TEST(CommandLine, HelpTellsOfEveryOptionAndSetsNone) {
+TEST(CommandLine, HelpListsEveryOptionAndSetsNone) {
   Program p;
-  ASSERT_EQ(p.fault({"--help", "--output", "here"}), 0) << "nothing is missing where help is asked";
+  ASSERT_EQ(p.fault({"--help", "--output", "here"}), 0)
+      << "nothing is missing where help is requested";
   EXPECT_EQ(p.output, "there");
   for (const char* part :
        {"Does something.", "Usage: program INPUT [OPTIONS]", "TUM folder or bag", "-h,--help",
@@ -226,12 +227,12 @@ TEST(CommandLine, SubcommandsHaveHelpAndOptionsOfTheirOwn) {
   EXPECT_THROW(Commands(false).app.parse({"info", "map", "--json"}), CommandError);
 }
 
-TEST(CommandLine, AMissingOrUnknownSubcommandIsToldWithTheKnownOnes) {
+TEST(CommandLine, AMissingOrUnknownSubcommandIsReportedWithTheKnownOnes) {
   for (const Words& words : {Words{}, Words{"chek", "file"}}) {
     Commands c(false);
     try {
       c.app.parse(words);
-      ADD_FAILURE() << "nothing said";
+      ADD_FAILURE() << "no message";
     } catch (const CommandError& error) {
       EXPECT_NE(std::string(error.what()).find("expected one of info, check"), std::string::npos)
           << error.what();

@@ -66,7 +66,7 @@ WorkingFrame noisyFrame(const cv::Mat& depth_m) {
   return made;
 }
 
-TEST(CompareViews, NoiseOfTheNormalsDoesNotSpeakAgainstAPlace) {
+TEST(CompareViews, NoiseOfTheNormalsDoesNotCountAgainstAPlace) {
   const PlaceAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner()));
   EXPECT_GT(agreement.overlap, 0.95);
   EXPECT_GT(agreement.agreeing, 0.95);

@@ -43,7 +43,7 @@ Walk walk(double noise, std::int64_t step_ms = 33) {
   return walk;
 }
 
-TEST(CovarianceCheck, AnHonestCovarianceHoldsWhatANormalErrorSays) {
+TEST(CovarianceCheck, ACorrectCovarianceHoldsTheShareOfANormalError) {
   const Walk w = walk(1.0);
   const CovarianceShare share = checkCovariances(w.truth, w.poses);
   EXPECT_EQ(share.motions, static_cast<std::size_t>(kLength - 1));
@@ -121,7 +121,8 @@ TEST(ProvisionalCheck, CountsThoseWithinTheirOwnSigmas) {
   EXPECT_NEAR(share.within, 0.5, 1e-9);
   EXPECT_NEAR(share.median_m, 0.1, 1e-6);
   EXPECT_NEAR(share.most_m, 0.1, 1e-6);
-  EXPECT_EQ(checkProvisional(truth, {}, provisional).poses, 0U) << "nothing tells where the map is";
+  EXPECT_EQ(checkProvisional(truth, {}, provisional).poses, 0U)
+      << "the place of the map is unknown";
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(Deformation, MovesNothingToTheBitWhereNoNeighbourMoves) {
   }
 }
 
-TEST(Deformation, TellsFromWhichFrameOnItMoves) {
+TEST(Deformation, ReportsTheFirstFrameThatItMoves) {
   using Frames = std::numeric_limits<std::int32_t>;
   EXPECT_EQ(example().firstMoved(0), 11);
   EXPECT_FALSE(same(example().at(11), Eigen::Isometry3d::Identity(), 0));

@@ -34,7 +34,7 @@ TEST(DepthField, followsASmoothFunctionWithFewNodes) {
   EXPECT_NEAR(linear.at(0.3, 0.7), 0.3 - 1.4, 1e-9);
 }
 
-TEST(DepthField, saysHowItsWeightsChange) {
+TEST(DepthField, givesTheDerivativesOfItsWeights) {
   const DepthField field = test::roomField();
   const double x = 0.413, y = 0.777, h = 1e-6;
   const FieldWeights w = field.weights(x, y);
@@ -89,7 +89,7 @@ TEST(DepthField, refusesWhatIsNoGrid) {
   EXPECT_THROW(flat(std::nan("")), std::invalid_argument);
 }
 
-TEST(DepthCorrection, correctsEachPixelAsTheFieldSays) {
+TEST(DepthCorrection, correctsEachPixelByTheField) {
   const DepthField field = test::roomField();
   const cv::Size size(64, 48);
   const DepthCorrection table(field, size);
@@ -146,7 +146,7 @@ TEST(DepthCorrection, isTheSameForAllSizesOfAnImage) {
   EXPECT_LT(cv::norm(shrunk, of_small, cv::NORM_INF), 2e-4);
 }
 
-TEST(DepthCorrector, leavesTheImageItWasGivenAloneAndTellsMetresUnrounded) {
+TEST(DepthCorrector, leavesItsInputAloneAndGivesMetresUnrounded) {
   const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(4000));
   const cv::Mat before = depth.clone();
   DepthCorrector corrector(test::roomField());

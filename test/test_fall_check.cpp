@@ -22,7 +22,7 @@ std::vector<FallFrame> fallAndReturn() {
   return frames;
 }
 
-TEST(FallCheck, TellsHowLongTheMapWasInView) {
+TEST(FallCheck, MeasuresHowLongTheMapWasInView) {
   const FallReturn fall = checkReturn(fallAndReturn(), kUp_ns);
   EXPECT_TRUE(fall.was_lost);
   ASSERT_TRUE(fall.seconds());
@@ -40,7 +40,7 @@ TEST(FallCheck, ABlurredViewShowsNothing) {
   EXPECT_NEAR(*checkReturn(frames, kUp_ns).seconds(), 0.3, 1e-9);
 }
 
-TEST(FallCheck, WhoIsFoundBySmallerViewsIsThereAtOnce) {
+TEST(FallCheck, ACameraFoundBySmallerViewsIsBackAtOnce) {
   auto frames = fallAndReturn();
   for (std::size_t i = 5; i < 11; ++i) frames[i].overlap = 0.7;
   EXPECT_EQ(checkReturn(frames, kUp_ns).seconds(), 0.0);
@@ -48,7 +48,7 @@ TEST(FallCheck, WhoIsFoundBySmallerViewsIsThereAtOnce) {
   EXPECT_FALSE(checkReturn(frames, kUp_ns).seconds()) << "the map was hardly in view";
 }
 
-TEST(FallCheck, WhoStaysLostHasNoTime) {
+TEST(FallCheck, ACameraThatStaysLostHasNoTime) {
   auto frames = fallAndReturn();
   frames.resize(9);
   const FallReturn fall = checkReturn(frames, kUp_ns);
@@ -64,14 +64,14 @@ TEST(FallCheck, OfSeveralLossesTheSlowestCounts) {
   EXPECT_NEAR(*checkReturn(frames, kUp_ns).seconds(), 0.4, 1e-9);
   frames.resize(9);
   EXPECT_FALSE(checkReturn(frames, kUp_ns).seconds()) << "found once, and not after the fall";
-  // A second loss in which the map is never in view says nothing.
+  // A second loss in which the map is never in view does not count.
   frames = fallAndReturn();
   frames[11].lost = !(frames[11].tracking = frames[11].has_pose = false);
   frames[11].overlap = 0;
   EXPECT_NEAR(*checkReturn(frames, kUp_ns).seconds(), 0.4, 1e-9);
 }
 
-TEST(FallCheck, WhoHoldsOnIsThereAtOnce) {
+TEST(FallCheck, ACameraThatIsNotLostIsBackAtOnce) {
   auto frames = fallAndReturn();
   for (FallFrame& frame : frames) frame.lost = !(frame.tracking = frame.has_pose = true);
   const FallReturn fall = checkReturn(frames, kUp_ns);

@@ -91,8 +91,9 @@ TEST(FieldEstimate, aStepIsTakenFromMorePairsThatAgreeNoWorse) {
   EXPECT_EQ(step.doubtOfStep(1000), "");
 }
 
-TEST(FieldEstimate, whereItsRangeEndsASensorIsNotBelieved) {
-  // Of a wall near the end only what is measured too near is left: it would bend the field.
+TEST(FieldEstimate, depthNearTheEndOfTheRangeIsIgnored) {
+  // Only points measured too near are left of a wall near the end of the range: they would bend the
+  // field.
   CalibrationView view;
   view.camera = test::roomCamera();
   view.depth_mm = cv::Mat(view.camera.height, view.camera.width, CV_16UC1, cv::Scalar(4940));
@@ -112,7 +113,7 @@ TEST(FieldEstimate, theOrderOfTheViewsAndThreadsDoNotMatter) {
 }
 
 TEST(FieldEstimate, viewsOfDifferentFragmentsMakeNoPair) {
-  // Each fragment has coordinates of its own: poses of two of them say nothing of each other.
+  // Each fragment has coordinates of its own: poses of two of them cannot be compared.
   auto views = distortedViews();
   std::vector<ViewSurface> surfaces;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -126,7 +127,7 @@ TEST(FieldEstimate, viewsOfDifferentFragmentsMakeNoPair) {
   }
 }
 
-TEST(FieldEstimate, saysWhatIsMissing) {
+TEST(FieldEstimate, reportsWhatIsMissing) {
   test::RoomView like;
   like.field = test::roomField();
   const FieldEstimate few = estimateField(test::roomViews(3, like));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The test stands in for fsync() and rename(), to see the order of what AtomicFile asks of the
-// disk.
+// The test replaces fsync() and rename(), to see the order of AtomicFile's calls.
 #include "posefusion/io/files.hpp"
 
 #include <dlfcn.h>

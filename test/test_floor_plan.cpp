@@ -43,7 +43,7 @@ TEST(FloorPlan, IsAsLargeAsItsScaleSays) {
   PlanConfig config;
   config.title = "a < b & c";
   const std::string svg = floorPlan(smallGrid(), column(), config);
-  // 2 m are 40 mm, with 10 mm round them.
+  // 2 m are 40 mm, with a margin of 10 mm.
   EXPECT_NE(svg.find("width=\"60.00mm\" height=\"76.00mm\""), std::string::npos) << svg;
   EXPECT_NE(svg.find("1 m, 1 : 50</text>"), std::string::npos) << svg;
   EXPECT_NE(svg.find("a &lt; b &amp; c</text>"), std::string::npos) << svg;

@@ -52,7 +52,7 @@ struct Carried {
     return status_;
   }
 
-  /// Where the last frame is said to be, from where it is.
+  /// Error of the position of the last frame.
   double errorM(int index) const {
     return (status_.T_map_camera.translation() - room().pose(index).translation()).norm();
   }
@@ -81,7 +81,7 @@ TEST(Fragments, ALostCameraMapsOnInCoordinatesOfItsOwn) {
     const FrameStatus& status = run.see(i);
     ASSERT_EQ(status.state, TrackingState::tracking) << "frame " << i;
     EXPECT_EQ(status.fragment, 1);
-    EXPECT_FALSE(status.located) << "where it is, nobody knows";
+    EXPECT_FALSE(status.located) << "its pose is unknown";
     EXPECT_LT(status.T_map_camera.translation().norm(), 3) << "near the origin of the fragment";
   }
   EXPECT_EQ(run.stableAtHome(), run.surfels_) << "the map is as it was";
@@ -137,7 +137,7 @@ TEST(Fragments, OneThatWasLostAndFoundAgainIsNotFoundInItself) {
   EXPECT_LT(run.errorM(39), 0.02);
 }
 
-/// Covers the camera, uncovers it at a frame, and tells where that is; it is believed.
+/// Covers the camera, uncovers it at a frame, and gives its place; it is accepted.
 void findAt(Carried& run, int index, const MapPose& pose) {
   for (int i = 0; i < kCovered; ++i) run.see(index, 0);
   run.mapper_.introduceCloser();  // so that it asks
@@ -165,11 +165,11 @@ TEST(Fragments, ACameraThatIsLostInOneIsFoundInAnother) {
   run.see(kMapped - 1);
   const MapPose away{1, run.status_.T_map_camera};
   ASSERT_EQ(run.status_.fragment, away.fragment);
-  const std::size_t told = run.mapper_.backEnd().trajectory().size();
+  const std::size_t poses = run.mapper_.backEnd().trajectory().size();
   findAt(run, 10, {kFirstFragment, room().pose(10)});
   EXPECT_TRUE(run.status_.located);
   EXPECT_LT(run.errorM(10), 0.02);
-  EXPECT_GT(run.mapper_.backEnd().trajectory().size(), told);
+  EXPECT_GT(run.mapper_.backEnd().trajectory().size(), poses);
   findAt(run, kMapped - 1, away);
   EXPECT_FALSE(run.status_.located);
   const Eigen::Isometry3d off = away.T_map_camera.inverse() * run.status_.T_map_camera;

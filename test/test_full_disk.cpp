@@ -37,7 +37,7 @@ class FullDiskTest : public ToolsTest {
   }
 };
 
-// Each map that is there loads, or says that nothing was written yet.
+// Each map that is there loads, or is reported as not written yet.
 constexpr char kCheckMaps[] = R"sh(
 find $disk -name '*.pfdb' | while read map; do
   posefusion_map check "$map" > $own/check.txt 2>&1 && echo "loads: $map" && continue

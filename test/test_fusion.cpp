@@ -47,9 +47,9 @@ TEST(Fuser, WhatComesBeforeAKnownWallIsStableOnlyLater) {
   fuseOften(10, scene(3.0), map);
   fuseOften(30, scene(3.0, 1.5), map);
   EXPECT_GT(countNear(map, 1.5), 1000U) << "it is in the map";
-  EXPECT_EQ(stableNear(map, 1.5), 0U) << "but may be somebody";
+  EXPECT_EQ(stableNear(map, 1.5), 0U) << "but may be a person";
   fuseOften(12, scene(3.0, 1.5), map);
-  EXPECT_GT(stableNear(map, 1.5), 1000U) << "who stays is furniture";
+  EXPECT_GT(stableNear(map, 1.5), 1000U) << "what stays is furniture";
 }
 
 TEST(Fuser, WhatIsSeenTogetherWithItsWallIsStableSoon) {
@@ -106,7 +106,7 @@ TEST(Fuser, UnconfirmedSurfelsAreForgotten) {
   EXPECT_EQ(std::count_if(x.begin(), x.end(), [](float value) { return value < 50; }), 0);
 }
 
-TEST(Fuser, AFullMapTakesNoMoreAndSaysSo) {
+TEST(Fuser, AFullMapTakesNoMoreAndReportsIt) {
   MapConfig config;
   config.memory_limit_mb = 1;
   SurfelMap map(config);

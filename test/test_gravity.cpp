@@ -23,7 +23,7 @@ TEST(GravityEstimate, StepsOfAWalkHaveNoMean) {
   EXPECT_LT(std::acos(gravity.up()->dot(up)), 0.5 * M_PI / 180);
 }
 
-TEST(GravityEstimate, WhatIsNotGravityTellsNothing) {
+TEST(GravityEstimate, WhatIsNotGravityIsIgnored) {
   GravityEstimate in_g, silent;
   for (int i = 0; i < 300; ++i) {
     in_g.add({0, -1, 0}, 0.033);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of the camera's motion does not depend on how many pixels the pictures have.
+// The measured motion of the camera does not depend on how many pixels the pictures have.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Seen {
 };
 
 /// The small room in pictures of the same view, `width` pixels wide, of a sensor that matches at
-/// 640. Without flow the pose is what the alignment alone says.
+/// 640. Without flow the pose is that of the alignment alone.
 Seen lastAt(int width, bool with_flow) {
   constexpr int kFrames = 4;
   const auto text = [](double value) { return std::to_string(value); };
@@ -49,7 +49,7 @@ double sigmaOf(const Matrix6d& covariance, int first) {
   return std::sqrt(covariance.block<3, 3>(first, first).trace());
 }
 
-TEST(ImageSize, WhatTheAlignmentSaysIsTheSame) {
+TEST(ImageSize, TheAlignmentIsTheSame) {
   const Seen usual = lastAt(640, false);
   for (const int width : {320, 1280}) {
     const Seen seen = lastAt(width, false);
@@ -63,14 +63,14 @@ TEST(ImageSize, WhatTheAlignmentSaysIsTheSame) {
   }
 }
 
-TEST(ImageSize, WhatCornersSayIsTheSameAsFarAsTheyHaveThePixels) {
+TEST(ImageSize, TheMotionOfCornersIsTheSameAsFarAsTheyHaveThePixels) {
   const Seen usual = lastAt(640, true);
   for (const int width : {320, 1280}) {
     const Seen seen = lastAt(width, true);
     for (const int first : {0, 3}) {
       const double ratio = sigmaOf(seen.status.motion.covariance, first) /
                            sigmaOf(usual.status.motion.covariance, first);
-      // No corner is better known than to a part of a pixel of the picture itself.
+      // A corner is measured to a part of a pixel of the full picture, not better.
       EXPECT_LT(ratio, 1.25 * std::max(1.0, 640.0 / width)) << width << " " << first;
       EXPECT_GT(ratio, 0.8) << width << " " << first;
     }

@@ -17,7 +17,7 @@ Person personAt(float u, int first_joint, int joints, float p) {
   return person;
 }
 
-/// Two people whom the embedded model sees: in the left and in the right half of the image.
+/// Two people seen by the embedded model, in the left and in the right half of the image.
 People twoHalves() {
   People people{5, true, {personAt(100, 0, 6, 0.5F), personAt(500, 0, 6, 0.5F)}};
   people.mask.probability = cv::Mat(60, 80, CV_8UC1, cv::Scalar(255));
@@ -26,7 +26,7 @@ People twoHalves() {
   return people;
 }
 
-TEST(JoinedPeople, WhomBothSawIsOne) {
+TEST(JoinedPeople, APersonThatBothSawIsOne) {
   const People network{5, true, {personAt(480, 4, 6, 0.9F)}};
   const People joined = joinPeople(network, twoHalves(), kImage, 15);
   ASSERT_EQ(joined.people.size(), 2U);
@@ -39,7 +39,7 @@ TEST(JoinedPeople, WhomBothSawIsOne) {
   EXPECT_FALSE(joined.mask.empty());
 }
 
-TEST(JoinedPeople, WhomOnlyOneSawIsKept) {
+TEST(JoinedPeople, APersonThatOnlyOneSawIsKept) {
   People embedded = twoHalves();
   embedded.mask.owner.colRange(20, 40).setTo(0);
   const People network{5, true, {personAt(250, 0, 6, 0.9F)}};
@@ -60,7 +60,7 @@ TEST(JoinedPeople, WithoutTheNetworkTheEmbeddedModelSpeaks) {
   EXPECT_EQ(joined.people.size(), 2U);
 }
 
-TEST(JoinedPeople, NobodyInTheMask) {
+TEST(JoinedPeople, AnEmptyMaskAddsNoPerson) {
   People embedded{5, true, {}};
   embedded.mask = {cv::Mat::zeros(60, 80, CV_8UC1), cv::Mat::zeros(60, 80, CV_8UC1)};
   EXPECT_TRUE(joinPeople({5, true, {}}, embedded, kImage, 15).people.empty());

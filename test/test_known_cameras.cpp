@@ -17,7 +17,7 @@ double fxOf(const std::string& folder) {
   return known ? known->file.camera.fx : 0;
 }
 
-TEST(KnownCameras, AreToldByTheFoldersName) {
+TEST(KnownCameras, AreRecognisedByTheFoldersName) {
   EXPECT_EQ(fxOf("data/rgbd_dataset_freiburg1_desk"), 517.3);
   EXPECT_EQ(fxOf("data/rgbd_dataset_freiburg2_xyz/"), 520.9) << "a slash at the end";
   EXPECT_EQ(fxOf("fr3/walking_xyz"), 535.4) << "of the folder around it";

@@ -54,8 +54,8 @@ class LandmarksTest : public ::testing::Test {
     return flow;
   }
 
-  void update(const SparseFlow& flow, int frame, bool believed = true) {
-    landmarks_.update(flow, {depth_m_, camera_}, poseAt(frame), believed);
+  void update(const SparseFlow& flow, int frame, bool accepted = true) {
+    landmarks_.update(flow, {depth_m_, camera_}, poseAt(frame), accepted);
   }
 
   std::mt19937 random_{5};
@@ -78,14 +78,14 @@ TEST_F(LandmarksTest, StandWhereTheyWereSeen) {
   EXPECT_EQ(landmarks_.find(110), nullptr);
 }
 
-TEST_F(LandmarksTest, SomebodyWhoWalksIsFoundOut) {
+TEST_F(LandmarksTest, CornersOnAWalkingPersonAreRejected) {
   for (int k = 1; k <= 30; ++k) update(flowTo(k, 20, 0.2), k);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     EXPECT_EQ(landmarks_.find(static_cast<std::uint32_t>(10 + i))->isBelieved(), i >= 20) << i;
   }
 }
 
-TEST_F(LandmarksTest, AFrameThatIsNotBelievedMovesNone) {
+TEST_F(LandmarksTest, ARejectedFrameMovesNone) {
   update(flowTo(1, 0, 0.0), 1);
   const Eigen::Vector3d before = landmarks_.find(10)->at;
   landmarks_.update(flowTo(2, 0, 0.0), {depth_m_, camera_}, poseAt(9), false);
@@ -110,7 +110,7 @@ TEST_F(LandmarksTest, AreForgottenWithTheirCornersAndFollowACorrection) {
 }
 
 TEST_F(LandmarksTest, HoldAMotionThatDriftsFromFrameToFrame) {
-  // The same flows, summed up with and without landmarks: only the latter walks off.
+  // The same flows, summed up with and without landmarks: only the latter drifts.
   Landmarks none;
   Eigen::Isometry3d held = poseAt(0), alone = poseAt(0);
   const auto step = [&](const SparseFlow& flow, const Landmarks* landmarks,

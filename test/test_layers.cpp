@@ -65,7 +65,7 @@ TEST(Layers, OfSomeBlocksThoseThatTheyHaveWithAnyOther) {
     SurfelMap map{MapConfig{}};
     map.restore({{0, lower == 0 ? older : younger}}, 1000);
     const auto first = static_cast<std::uint32_t>(map.blocks().size());
-    // Beside each other in the same cubes: moved there, as a correction does it.
+    // Beside each other in the same cubes, as after a correction.
     map.add(lower == 0 ? younger : older, 1);
     map.move({[](const SurfelBlock&) { return false; }, [](SurfelArrays&, int) {},
               [](int) { return 0; }},

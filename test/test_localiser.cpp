@@ -114,7 +114,7 @@ TEST_F(MapperTest, WhileLostAHalfGoodFrameIsNotFused) {
   EXPECT_EQ(mapper.map().size(), surfels);
 }
 
-/// A step of a camera in a mapped room that no corner tells of.
+/// A step of a camera in a mapped room that no corner measures.
 class LocaliserStepTest : public MapperTest {
  protected:
   void SetUp() override {
@@ -164,17 +164,17 @@ class LocaliserStepTest : public MapperTest {
   ModelPyramid points_;
 };
 
-TEST_F(LocaliserStepTest, IsBelievedWhereTheMapShowsTheSame) {
+TEST_F(LocaliserStepTest, IsAcceptedWhereTheMapAgrees) {
   const Location location = step(1.0);
   EXPECT_EQ(location.outcome, FrameOutcome::fused) << location.detail;
 }
 
-TEST_F(LocaliserStepTest, IsNotBelievedByWhatTrackingAloneSays) {
+TEST_F(LocaliserStepTest, IsRejectedWithTrackingAlone) {
   const Location location = step(1.5);
   EXPECT_EQ(location.outcome, FrameOutcome::disagrees) << location.detail;
 }
 
-TEST_F(LocaliserStepTest, OfABlurredFrameIsToldWhereCornersDoNotContradict) {
+TEST_F(LocaliserStepTest, OfABlurredFrameIsReportedUnlessCornersContradict) {
   const Localiser before = localiser_;
   const Location location = step(1.0, flowTo(kFirst + kStep), true);
   ASSERT_TRUE(location.motion.found);
@@ -183,7 +183,7 @@ TEST_F(LocaliserStepTest, OfABlurredFrameIsToldWhereCornersDoNotContradict) {
   localiser_ = before;
   const Location contradicted = step(1.0, flowTo(kFirst), true);
   ASSERT_TRUE(contradicted.motion.found);
-  EXPECT_FALSE(contradicted.located) << "corners say that it stands still";
+  EXPECT_FALSE(contradicted.located) << "corners show no motion";
 }
 
 /// A camera in a room of which the map shows nothing any more.
@@ -207,7 +207,7 @@ class LocaliserLossTest : public MapperTest {
   ModelPyramid points_;
 };
 
-TEST_F(LocaliserLossTest, TheWayThroughALossIsKnownWhileCornersTellOfIt) {
+TEST_F(LocaliserLossTest, TheWayThroughALossIsKnownWhileCornersMeasureIt) {
   FlowTracker flow;
   Location location;
   constexpr int kLast = 24;
@@ -219,18 +219,18 @@ TEST_F(LocaliserLossTest, TheWayThroughALossIsKnownWhileCornersTellOfIt) {
   EXPECT_LT(off.translation().norm(), 0.03);
   EXPECT_LT(angleOf(off), 0.02);
   const double sigma_m = std::sqrt(location.carried.covariance.topLeftCorner<3, 3>().trace());
-  EXPECT_LT(off.translation().norm(), 3 * sigma_m) << "the covariance is honest";
+  EXPECT_LT(off.translation().norm(), 3 * sigma_m) << "the covariance covers the error";
 
   EXPECT_FALSE(see(kLast + 1, {}).carried.is_measured);
   location = see(kLast + 2, flow.advance(room().frame(kLast + 2).frame));
-  EXPECT_FALSE(location.carried.is_measured) << "one step that nobody knows is enough";
+  EXPECT_FALSE(location.carried.is_measured) << "one unknown step is enough";
 }
 
 /// A camera that stands before a wall without a picture, of which people leave a part, and a few
 /// corners that are new in every frame: along the wall it is known by them alone.
 class LocaliserGapTest : public ::testing::Test {
  protected:
-  /// So many frames; ends with the first that is not believed.
+  /// So many frames; ends with the first that is rejected.
   Location look(int frames, const cv::Rect& gap) {
     RgbdFrame frame{0, cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)),
                     cv::Mat::zeros(120, 160, CV_32FC1), 1e-3, smallCamera()};
@@ -269,13 +269,13 @@ class LocaliserGapTest : public ::testing::Test {
   ModelPyramid points_;
 };
 
-TEST_F(LocaliserGapTest, IsNotBelievedWhereItIsKnownByALongChainOfCornersAlone) {
+TEST_F(LocaliserGapTest, IsRejectedWhereItIsKnownByALongChainOfCornersAlone) {
   const Location location = look(kFrames, {40, 20, 70, 80});
   EXPECT_EQ(location.outcome, FrameOutcome::degenerate) << location.detail;
   EXPECT_NE(location.detail.find("0.03"), std::string::npos) << location.detail;
 }
 
-TEST_F(LocaliserGapTest, AnOpenViewIsBelieved) {
+TEST_F(LocaliserGapTest, AnOpenViewIsAccepted) {
   const Location location = look(kFrames, {0, 0, 160, 120});
   EXPECT_EQ(location.outcome, FrameOutcome::fused) << location.detail;
 }

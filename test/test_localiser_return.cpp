@@ -27,7 +27,7 @@ class MapperReturnTest : public MapperTest {
     for (int i = 0; i < 20 && !isLost(); ++i) see(withDepth(truth_, nothing));
     ASSERT_TRUE(isLost());
   }
-  /// Not for so long that it is lost.
+  /// Covers it too briefly to be lost.
   void cover(int frames) {
     const cv::Mat nothing = cv::Mat::zeros(240, 320, CV_16UC1);
     for (int i = 0; i < frames; ++i) see(withDepth(truth_, nothing));
@@ -40,15 +40,15 @@ class MapperReturnTest : public MapperTest {
     frame.color = cv::Mat(cv::Scalar::all(255) - from.frame.color);  // pixels of its own
     return frame;
   }
-  /// The first frame that the camera took so far from where it was seen last.
+  /// The first frame so far from the last known pose.
   TrueFrame firstBeyond(double way_m) const {
     for (int i = 20; i < 60; ++i) {
       if (errorM(status_, room().frame(i)) > way_m) return room().frame(i);
     }
     throw std::logic_error("the camera does not move so far");
   }
-  /// The loop closer has seen that the camera is where it is.
-  void tellPlace() {
+  /// The loop closer's answer: the place where the camera is.
+  void answerPlace() {
     LoopAnswer answer;
     answer.asked_for_place = true;
     answer.place.emplace();
@@ -93,7 +93,7 @@ TEST_F(MapperReturnTest, WithoutAGapTheShapeIsEnough) {
   EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
 }
 
-TEST_F(MapperReturnTest, WhereNoCornerTellsOfAStepShapeIsEnough) {
+TEST_F(MapperReturnTest, WhereNoCornerMeasuresAStepShapeIsEnough) {
   const TrueFrame away = firstBeyond(0.08);
   see(anotherPicture(away));
   EXPECT_EQ(status_.state, TrackingState::tracking) << status_.detail;
@@ -110,7 +110,7 @@ TEST_F(MapperReturnTest, FarFromWhereItWasSeenLastTheShapeIsNotEnough) {
   EXPECT_LT(errorM(status_, far), 0.01);
 }
 
-TEST_F(MapperReturnTest, ABlurredFrameFarFromWhereItWasSeenLastIsNotToldByShape) {
+TEST_F(MapperReturnTest, ABlurredFrameFarFromWhereItWasSeenLastIsNotAcceptedByShape) {
   const TrueFrame near = firstBeyond(0.08);
   see(anotherPicture(near), true);
   EXPECT_EQ(status_.outcome, FrameOutcome::forced) << status_.detail;
@@ -121,10 +121,10 @@ TEST_F(MapperReturnTest, ABlurredFrameFarFromWhereItWasSeenLastIsNotToldByShape)
   EXPECT_FALSE(status_.located) << "as in a fall";
 }
 
-TEST_F(MapperReturnTest, APlaceThatWasFoundSaysNothingOfTheNextLoss) {
+TEST_F(MapperReturnTest, APlaceThatWasFoundDoesNotCountForTheNextLoss) {
   lose();
   see(truth_.frame);
-  tellPlace();
+  answerPlace();
   for (int k = 0; k < 3; ++k) see(truth_.frame);
   ASSERT_FALSE(isLost());
   lose();
@@ -135,7 +135,7 @@ TEST_F(MapperReturnTest, APlaceThatWasFoundComesBeforeWhatOnlyLooksRight) {
   lose();
   for (int k = 0; k < 4; ++k) see(truth_.frame);
   ASSERT_EQ(status_.outcome, FrameOutcome::unproven) << "it looks right, and is being proven";
-  tellPlace();
+  answerPlace();
   for (int k = 0; k < 3; ++k) see(truth_.frame);
   EXPECT_EQ(status_.state, TrackingState::tracking) << "three frames are enough where it was found";
   EXPECT_LT(errorM(status_, truth_), 0.006);

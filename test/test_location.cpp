@@ -38,8 +38,8 @@ TEST(MayBeNew, AChairSeenFromItsSideIsWeakToo) {
   EXPECT_FALSE(chair.mayBeNew(Background::unknown)[0]);
 }
 
-/// Of the cells of a weak detection so many stand before the map, so many agree with it, and the
-/// others lie on what it has seen for a few frames only.
+/// A weak detection: `nearer` of its cells are before the map, `agrees` agree with it, and the
+/// others lie on surfaces that the map has seen for a few frames only.
 bool mayBeNew(std::size_t nearer, std::size_t agrees) {
   Detections weak;
   weak.people.people[0].score = 0.5F;
@@ -49,7 +49,7 @@ bool mayBeNew(std::size_t nearer, std::size_t agrees) {
   return pf::mayBeNew(weak.people, weak.shown, background)[0];
 }
 
-TEST(MayBeNew, WhoWasMappedWhileComingInStandsBeforeTheMapInPart) {
+TEST(MayBeNew, APersonMappedWhileComingInStandsBeforeTheMapInPart) {
   EXPECT_TRUE(mayBeNew(5, 0));
   EXPECT_TRUE(mayBeNew(5, 6)) << "an arm on the door post";
   EXPECT_FALSE(mayBeNew(0, 0)) << "a chair that has just come into view";
@@ -65,7 +65,7 @@ TEST(MayBeNew, ASureDetectionNeedsNoMap) {
   }
 }
 
-TEST(MayBeNew, WhomNoMaskShowsIsNotAskedForOne) {
+TEST(MayBeNew, APersonThatNoMaskShowsNeedsNone) {
   Detections joints;
   joints.people.people[1].score = 0.1F;
   EXPECT_TRUE(joints.mayBeNew(Background::agrees)[1]);
@@ -73,8 +73,8 @@ TEST(MayBeNew, WhomNoMaskShowsIsNotAskedForOne) {
   EXPECT_EQ(pf::mayBeNew(joints.people, joints.shown, {}), (std::vector<bool>{true, true}));
 }
 
-/// Somebody carried before a wall 2 m away that the map knows, and a detection of four joints that
-/// lies on the wall beside.
+/// A carried person before a mapped wall 2 m away, and a detection of four joints on the wall
+/// beside.
 struct Carried {
   Evidence evidence;
   TrackedPerson tracked;
@@ -101,7 +101,7 @@ struct Carried {
   }
 };
 
-TEST(LocatePerson, AFewJointsOnTheWallDoNotEndWhomTheMapShowsBeforeIt) {
+TEST(LocatePerson, AFewJointsOnTheWallDoNotEndAPersonThatTheMapShowsBeforeIt) {
   Carried carried;
   EXPECT_TRUE(locatePerson(carried.evidence, 30, carried.tracked));
   EXPECT_FALSE(carried.tracked.in_map);
@@ -115,7 +115,7 @@ TEST(LocatePerson, WhoseMaskLiesOnTheWallTooIsAThingOfTheMap) {
   EXPECT_FALSE(locatePerson(wall.evidence, 30, wall.tracked));
 }
 
-TEST(LocatePerson, WhoIsNewAndLiesOnTheWallIsAThingOfTheMap) {
+TEST(LocatePerson, ANewPersonOnTheWallIsPartOfTheMap) {
   Carried fresh;
   fresh.tracked.cells.clear();
   EXPECT_FALSE(locatePerson(fresh.evidence, 30, fresh.tracked));

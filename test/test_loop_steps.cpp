@@ -24,7 +24,7 @@ Config configOfRoom() {
   return config;
 }
 
-/// Of a camera that an earlier recording has found nothing wrong with.
+/// Of a camera without errors in an earlier recording.
 DepthCalibration knownCamera() {
   DepthCalibration known;
   known.camera = room().frame(0).frame.camera;
@@ -39,7 +39,7 @@ class LoopSteps : public testing::Test {
   Mapper mapper{config};
 };
 
-/// Maps frames until there is a question of a keyframe that was tracked from another.
+/// Maps frames until there is a question for a keyframe that was tracked from another.
 std::optional<LoopQuestion> askedBy(Mapper& mapper, LoopWorker* worker = nullptr) {
   for (int i = 0; i < kFrames; ++i) {
     mapper.process({room().frame(i).frame, cv::Mat(), {}});
@@ -64,7 +64,7 @@ Eigen::Isometry3d aLittle() {
   return expSe3(twist);
 }
 
-TEST_F(LoopSteps, PicturesPutRightWhatTrackingSaid) {
+TEST_F(LoopSteps, PicturesCorrectTheStepsOfTracking) {
   LoopWorker worker(config.loop, config.tracking, depthSensorOf(config), config.calibration);
   std::optional<LoopQuestion> question = askedBy(mapper, &worker);
   ASSERT_TRUE(question);
@@ -114,7 +114,7 @@ TEST_F(LoopSteps, AMapThatMayNotChangeStays) {
   EXPECT_EQ(mapper.backEnd().graph().version(), version);
 }
 
-TEST(LoopStepsOff, WithoutLoopsNothingIsAsked) {
+TEST(LoopStepsOff, WithoutLoopsNoStepIsMeasured) {
   Config config = configOfRoom();
   config.loop.enabled = false;
   Mapper mapper(config);
@@ -122,8 +122,8 @@ TEST(LoopStepsOff, WithoutLoopsNothingIsAsked) {
   EXPECT_FALSE(askedBy(mapper));
 }
 
-// Pictures of a camera that is off by an unknown field tell turns worse than the map.
-TEST(LoopStepsOff, OfACameraThatIsNotKnownNothingIsAsked) {
+// Pictures of a camera with an unknown depth field measure turns worse than the map does.
+TEST(LoopStepsOff, WithoutACalibrationNoStepIsMeasured) {
   Mapper mapper(configOfRoom());
   EXPECT_FALSE(askedBy(mapper));
 }

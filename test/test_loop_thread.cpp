@@ -108,13 +108,13 @@ TEST(LoopThread, AnswersDependOnNeitherSpeedNorThreads) {
   EXPECT_EQ(many.status.T_map_camera.matrix(), single.status.T_map_camera.matrix());
 }
 
-TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
+TEST(LoopThread, LiveNothingWaitsForAnAnswer) {
   Config config;
   LoopThread loops(config, AnswerTime::when_ready);
   Mapper mapper(config);
   loops.serve(mapper);
   mapper.process({room().frame(0).frame, {}, {}});
-  loops.serve(mapper);  // asks for the first keyframe
+  loops.serve(mapper);  // the question of the first keyframe
   loops.finish(mapper);
   EXPECT_EQ(loops.counts().keyframes, 1U);
   ASSERT_EQ(loops.verificationMs().size(), 1U);
@@ -127,7 +127,7 @@ TEST(LoopThread, LiveNobodyWaitsForAnAnswer) {
   EXPECT_EQ(loops.counts().keyframes, 1U) << "a map of its own";
 }
 
-/// Answers as the test says.
+/// Answers as the test sets it.
 class FakeResponder : public LoopResponder {
  public:
   std::uint64_t ask(LoopQuestion question) override {
@@ -175,7 +175,7 @@ class LoopExchanges : public testing::Test {
   std::int64_t stamp_ns = 0;
 };
 
-TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
+TEST_F(LoopExchanges, ALostCamerasQuestionHoldsTheCorrectionsSinceTheLast) {
   for (int i = 0; i < kMapped; ++i) see(i);
   const auto& keyframes = mapper->backEnd().graph().keyframes();
   ASSERT_GT(keyframes.size(), 1U);
@@ -191,7 +191,8 @@ TEST_F(LoopExchanges, ALostCamerasQuestionTellsOfCorrectionsSinceTheLast) {
   closer->questions.clear();
   for (int i = 0; i < kCovered; ++i) see(kMapped - 1, true);
   for (int i = 0; i < 3 && closer->questions.empty(); ++i) see(farthestFrame());
-  ASSERT_EQ(closer->questions.size(), 2U) << "what is to be told, and then the place, by itself";
+  ASSERT_EQ(closer->questions.size(), 2U)
+      << "the update first, then the place in a question of its own";
   EXPECT_EQ(closer->questions[0].place, nullptr);
   EXPECT_FALSE(closer->questions[0].is_urgent);
   ASSERT_NE(closer->questions[1].place, nullptr);
@@ -221,7 +222,7 @@ TEST_F(LoopExchanges, ALostCameraAsksAgainWhenAQuestionWasGivenUp) {
   EXPECT_THROW(see(farthestFrame()), std::runtime_error);
   closer->throws = closer->is_ready = false;
   see(farthestFrame());
-  EXPECT_EQ(places(), 3) << "it goes on after what was thrown";
+  EXPECT_EQ(places(), 3) << "it goes on after the exception";
 }
 
 TEST_F(LoopExchanges, ALostCamerasAnswerIsTakenBeforeThoseThatWait) {
@@ -243,7 +244,7 @@ TEST_F(LoopExchanges, ALostCamerasAnswerIsTakenBeforeThoseThatWait) {
   EXPECT_EQ(closer->taken, (std::vector<std::uint64_t>{place, 1, 2, 3}));
 }
 
-TEST_F(LoopExchanges, WhereTheCloserIsBehindNeighboursAreToldButNotCompared) {
+TEST_F(LoopExchanges, WhereTheCloserIsBehindNeighboursAreAddedButNotCompared) {
   int next = 0;
   for (; next < kMapped && closer->questions.size() < 8; ++next) see(next);
   ASSERT_EQ(closer->questions.size(), 8U) << "the test needs keyframes";
@@ -259,7 +260,7 @@ TEST_F(LoopExchanges, WhereTheCloserIsBehindNeighboursAreToldButNotCompared) {
   EXPECT_TRUE(seeks(8)) << "two were answered";
 }
 
-TEST_F(LoopExchanges, APlaceThatNobodyWantsAnyMoreIsNotLookedFor) {
+TEST_F(LoopExchanges, AVoidQuestionForAPlaceIsNotSearched) {
   for (int i = 0; i < 10; ++i) see(i);
   for (int i = 0; i < kCovered; ++i) see(10, true);
   for (int i = 0; i < 20 && !closer->questions.back().place; ++i) see(9);
@@ -292,7 +293,7 @@ TEST_F(LaggingExchange, AsksInOneAndInOrder) {
   for (const LoopQuestion& question : closer->questions) EXPECT_FALSE(question.is_urgent);
 }
 
-TEST_F(LoopExchanges, WhoBeginsToAnswerIsToldOfAllKeyframes) {
+TEST_F(LoopExchanges, ANewCloserGetsAllKeyframes) {
   int next = 0;
   for (; next < kMapped && closer->questions.size() < 3; ++next) see(next);
   ASSERT_EQ(closer->questions.size(), 3U) << "the test needs keyframes";

@@ -21,7 +21,7 @@
 namespace pf {
 namespace {
 
-/// What is said of a map after such a change. Written once: waiting for the disk takes long.
+/// The error of reading a map after such a change. Written once: waiting for the disk takes long.
 std::string errorAfter(const std::string& sql) {
   const TemporaryFolder folder;
   static const std::string whole = readFile(saved(folder, ExampleMap().update));
@@ -187,13 +187,13 @@ TEST(MapDatabase, AFullDiskLosesOnlyWhatDidNotFit) {
   readAll(path);
 }
 
-/// Writes for ever, telling when the first is done.
-[[noreturn]] void writeForEver(const std::string& path, int told) {
+/// Writes until it is killed; sends a byte to `pipe_end` after the first writes.
+[[noreturn]] void writeUntilKilled(const std::string& path, int pipe_end) {
   ExampleMap example;
   MapWriter writer(path, MapWriter::Mode::create);
   for (;;) {
     writer.write(example.update);
-    if (example.update.frame++ == 9 && write(told, "x", 1) != 1) _exit(1);
+    if (example.update.frame++ == 9 && write(pipe_end, "x", 1) != 1) _exit(1);
     example.update.frames.resize(1);
   }
 }
@@ -203,17 +203,17 @@ TEST(MapDatabase, AKilledWriterLeavesAWholeMap) {
   for (int i = 0; i < 12; ++i) {
     const TemporaryFolder folder;
     const std::string path = folder / "map.pfdb";
-    int told[2];
-    ASSERT_EQ(pipe(told), 0);
+    int pipe_ends[2];
+    ASSERT_EQ(pipe(pipe_ends), 0);
     const pid_t child = fork();
-    if (child == 0) writeForEver(path, told[1]);
+    if (child == 0) writeUntilKilled(path, pipe_ends[1]);
     char byte = 0;
-    ASSERT_EQ(read(told[0], &byte, 1), 1);
+    ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    close(told[0]);
-    close(told[1]);
+    close(pipe_ends[0]);
+    close(pipe_ends[1]);
     const std::string before = readFile(path);
     {
       const MapReader reader(path);

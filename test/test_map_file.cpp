@@ -30,7 +30,7 @@ SurfelMap mapOf(const SurfelArrays& surfels) {
   return map;
 }
 
-TEST(MapFile, LiesInTheFrameThatIsAskedFor) {
+TEST(MapFile, LiesInTheRequestedFrame) {
   const TemporaryFolder folder;
   const SurfelArrays surfels = surfelsOf(9);
   saveMap(folder / "m.ply", mapOf(surfels), bodyFromOptical());

@@ -33,7 +33,7 @@ void killedAfter(const Write& write) {
   ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
 }
 
-/// A map of the name whose writer was killed after two writes, so that there is a log.
+/// A map whose writer was killed after two writes, so that there is a log.
 std::string killed(const TemporaryFolder& folder, const std::string& name, ExampleMap example) {
   const std::string path = folder / name;
   killedAfter([&] {
@@ -76,7 +76,7 @@ TEST(MapLog, ANewMapTakesNothingFromTheCompanionsOfADeletedOne) {
   EXPECT_EQ(MapReader(path).missing(), "");
 }
 
-TEST(MapLog, AKilledWriterLeavesAllOfItWithTheLogAndSaysSoWithout) {
+TEST(MapLog, AKilledWriterLeavesAllOfItWithTheLogAndNamesWhatIsMissingWithout) {
   const TemporaryFolder folder;
   const std::string path = killed(folder, "map.pfdb", {});
   EXPECT_EQ(MapReader(path).missing(), "");
@@ -94,7 +94,7 @@ TEST(MapLog, AClosedMapMissesNothingAlsoWhereTheHeaderWasNotWrittenAnyMore) {
   const TemporaryFolder folder;
   const std::string path = saved(folder, ExampleMap().update);
   EXPECT_EQ(MapReader(path).missing(), "");
-  // As killed between the end of the log and the change of the header that tells it.
+  // As if killed between the end of the log and the change of the header that records it.
   std::string bytes = readFile(path);
   bytes[18] = bytes[19] = 2;
   EXPECT_EQ(MapReader(folder.write("header.pfdb", bytes)).missing(), "");

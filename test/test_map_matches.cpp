@@ -46,7 +46,7 @@ class MapMatches : public MapperTest {
     return {dense().loop, dense().tracking, depthSensorOf(dense()), mapper().keyframeViews()};
   }
 
-  /// The pose of the view that a loop leads to, by that loop, from where it truly is (m).
+  /// Error of the position that a loop gives the view that it leads to (m).
   static double errorM(const PoseConstraint& loop) {
     const auto& views = mapper().keyframeViews();
     const auto pose = [&](int i) { return views[static_cast<std::size_t>(i)].pose.T_map_camera; };
@@ -86,7 +86,7 @@ TEST_F(MapMatches, AGuessThatIsOffIsAlignedAndAWrongOneIsRefused) {
     EXPECT_LT(errorM(loop), 0.02);
   }
   for (const PoseConstraint& loop : matcher().verified(moved(again(), 0.8))) {
-    EXPECT_LT(errorM(loop), 0.02) << "believed, so right";
+    EXPECT_LT(errorM(loop), 0.02) << "an accepted loop is right";
   }
   EXPECT_TRUE(matcher().verified(moved(again(), 30)).empty()) << "nothing was seen from near there";
   EXPECT_TRUE(matcher().verified({}).empty());

@@ -168,7 +168,7 @@ TEST(MapMerge, OneCommonPictureIsTooLittle) {
 }
 
 TEST(MapMerge, WhatContradictsItselfIsRefused) {
-  // Tracking has jumped by a metre, and does not know.
+  // Tracking has jumped by a metre without notice.
   SavedMap broken = firstHalf();
   const std::size_t middle = broken.keyframes.size() / 2;
   const Eigen::Isometry3d jump(Eigen::Translation3d(0, 0, 1));

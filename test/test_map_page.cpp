@@ -127,7 +127,7 @@ TEST(MapPage, SurfelsAreManyChunksInOnePage) {
   EXPECT_NEAR(facts["box"]["high"][0].get<float>(), 2.99, 0.03);
 }
 
-TEST(MapPage, ATitleIsTextWhateverItSays) {
+TEST(MapPage, ATitleIsTextWhateverItHolds) {
   const std::string page =
       pageOf(pageSurfels(square(3), 10'000), "</title><script>alert(1)</script>\"{{chunks}}&");
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);

@@ -94,7 +94,7 @@ Walk walked(const Eigen::Vector3d& start_m) {
 
 TEST(MapRange, AMapIsTheSameWhereverItBegins) {
   const Walk home = walked({0, 0, 0});
-  // The second and third walk across a border at 250 m, if there were one.
+  // The second and third would cross a border at 250 m.
   for (const Eigen::Vector3d& start_m :
        {Eigen::Vector3d(-300, 0, 0), Eigen::Vector3d(-249.99, 0, 0), Eigen::Vector3d(249.99, 0, 0),
         Eigen::Vector3d(300, 0, 0), Eigen::Vector3d(0, 700, 0), Eigen::Vector3d(1000, 0, 0)}) {

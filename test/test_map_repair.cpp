@@ -115,7 +115,7 @@ TEST_F(MapRepairTest, TheLogOfAnotherMapIsLeftOut) {
   EXPECT_TRUE(fs::exists(folder / "map.pfdb-wal")) << "it is the user's";
 }
 
-TEST_F(MapRepairTest, WhateverIsDamagedItGivesAWholeMapOrSaysWhyNot) {
+TEST_F(MapRepairTest, WhateverIsDamagedItGivesAWholeMapOrReportsWhyNot) {
   const std::string text = readFile(file);
   std::mt19937 random(7);
   int mended = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_map as a user runs it who wants surfaces and plans.
+// posefusion_map from the command line: surfaces and plans.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -81,7 +81,7 @@ TEST_F(MapSurfaceToolTest, AMeshThatCannotBeIsRefusedAndNothingIsLeft) {
   EXPECT_TRUE(hasSaid("magic")) << said;
 }
 
-TEST_F(MapSurfaceToolTest, APageLiesBesideTheMapUnlessToldOtherwise) {
+TEST_F(MapSurfaceToolTest, APageLiesBesideTheMapByDefault) {
   EXPECT_EQ(run({"view", file}), 0) << said;
   EXPECT_TRUE(hasSaid("map.html: ")) << said;
   EXPECT_TRUE(hasSaid("of 4000 surfels in ")) << said;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_map as a user runs it.
+// posefusion_map from the command line.
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -43,7 +43,7 @@ class MapToolTest : public testing::Test {
   std::string before, said;
 };
 
-TEST_F(MapToolTest, InfoTellsWhatIsInTheFile) {
+TEST_F(MapToolTest, InfoListsWhatIsInTheFile) {
   EXPECT_EQ(run({"info", file}), 0) << said;
   EXPECT_TRUE(hasSaid("camera       32 x 24, fx 26.00")) << said;
   EXPECT_TRUE(hasSaid("frames       10 with a pose, 10 fused")) << said;
@@ -61,7 +61,7 @@ TEST_F(MapToolTest, CheckReadsItAll) {
   EXPECT_TRUE(hasSaid("posefusion_map: " + cut + ": is damaged")) << said;
 }
 
-TEST_F(MapToolTest, CheckSaysWhatAnUnfinishedMapMisses) {
+TEST_F(MapToolTest, CheckReportsWhatAnUnfinishedMapMisses) {
   const std::string copy = folder.write("copy.pfdb", before);
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(copy.c_str(), &database), SQLITE_OK);
@@ -105,7 +105,7 @@ TEST_F(MapToolTest, ExportWritesWhatOthersRead) {
   EXPECT_EQ(depth.at<std::uint16_t>(3, 4), 2001);
 }
 
-TEST_F(MapToolTest, TheCalibrationOfAMapIsToldAndExported) {
+TEST_F(MapToolTest, TheCalibrationOfAMapIsPrintedAndExported) {
   EXPECT_EQ(run({"info", file}), 0) << said;
   EXPECT_TRUE(hasSaid("calibration  none")) << said;
   const std::string yaml = folder / "calibration.yaml", picture = folder / "field.png";
@@ -139,7 +139,7 @@ TEST_F(MapToolTest, TheCalibrationOfAMapIsToldAndExported) {
   }
 }
 
-TEST_F(MapToolTest, WrongUseIsToldAndChangesNothing) {
+TEST_F(MapToolTest, WrongUseIsReportedAndChangesNothing) {
   EXPECT_NE(run({}), 0);
   EXPECT_NE(run({"export", file}), 0);
   EXPECT_TRUE(hasSaid("--output")) << said;

@@ -8,7 +8,7 @@
 namespace pf {
 namespace {
 
-TEST(MappedPeople, WhatTheMapHasIsNobody) {
+TEST(MappedPeople, WhatTheMapHasIsNoPerson) {
   // A weak detection on a wall that the map knows well.
   Scene scene;
   scene.frame.depth = scene.room.depth_m;
@@ -16,15 +16,15 @@ TEST(MappedPeople, WhatTheMapHasIsNobody) {
   SegmenterChain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
   EXPECT_TRUE(result.mask.empty());
-  // A sure one wins, for somebody may have been missed and mapped.
+  // A strong one wins, as a person may have been missed and mapped.
   Scene mapped;
   mapped.room.depth_m = mapped.frame.depth;
   EXPECT_GT(iou(segmenter.segment(mapped.frame, mapped.people, &mapped.room).mask, mapped.truth),
             0.85);
 }
 
-TEST(MappedPeople, TellsWhereTheMapHoldsAPerson) {
-  // Somebody stood still, was missed and mapped; behind is the wall, or nothing within reach.
+TEST(MappedPeople, FindsWhereTheMapHoldsAPerson) {
+  // A person stood still, was missed and mapped; behind is the wall, or nothing within reach.
   for (const float wall_z : {3.0F, 0.0F}) {
     Scene scene(2.0F, 320, wall_z);
     scene.room.depth_m = scene.frame.depth;

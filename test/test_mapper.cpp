@@ -64,7 +64,7 @@ TEST_F(MapperTest, TheSensorOfTheSettingsIsThatOfMapTrackingAndViews) {
   };
   const double kinect = tracked("auto");
   EXPECT_EQ(tracked("structured_light"), kinect);
-  EXPECT_GT(tracked("active_stereo"), 1.5 * kinect) << "it is believed less";
+  EXPECT_GT(tracked("active_stereo"), 1.5 * kinect) << "its depth has less weight";
 }
 
 TEST_F(MapperTest, AGapBetweenPeopleIsNotEnoughToTrackBy) {
@@ -106,15 +106,15 @@ TEST_F(MapperTest, ABodyBeforeTheLensIsNotFused) {
   EXPECT_EQ(mapper.map().size(), surfels);
 }
 
-TEST_F(MapperTest, APersonWhoWasFusedLeavesTheMapWhereTheSegmenterSaysSo) {
+TEST_F(MapperTest, AFusedPersonLeavesTheMapWhereTheSegmenterFindsOne) {
   const cv::Rect person(130, 70, 60, 100);
-  Mapper told(config()), untold(config());
+  Mapper with_mask(config()), without_mask(config());
   RgbdFrame frame = room().frame(0).frame;
   const RgbdFrame with_person = frame;
   const auto step = [&](const cv::Mat& in_map_mask) {
     frame.stamp_ns += 33333333;
-    untold.process({frame, {}, {}});
-    return told.process({frame, {}, {}, false, in_map_mask, with_person.depth}).outcome;
+    without_mask.process({frame, {}, {}});
+    return with_mask.process({frame, {}, {}, false, in_map_mask, with_person.depth}).outcome;
   };
   for (int i = 0; i < 15; ++i) ASSERT_EQ(step({}), FrameOutcome::fused);
   cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
@@ -125,8 +125,8 @@ TEST_F(MapperTest, APersonWhoWasFusedLeavesTheMapWhereTheSegmenterSaysSo) {
   const auto mapped = [&](const Mapper& mapper) {
     return cv::countNonZero(mapper.view().depth_m(person));
   };
-  EXPECT_GT(mapped(untold), person.area() * 9 / 10) << "no depth is no evidence";
-  EXPECT_LT(mapped(told), person.area() / 10);
+  EXPECT_GT(mapped(without_mask), person.area() * 9 / 10) << "no depth is no evidence";
+  EXPECT_LT(mapped(with_mask), person.area() / 10);
   EXPECT_EQ(step(mask(person)), FrameOutcome::bad_input) << "the mask is not of the frame's size";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mapper whose depth camera is off, and what it does with what is known or learned of that.
+// A mapper whose depth camera has systematic errors, known before or learned.
 #include <gtest/gtest.h>
 
 #include "calibration_room.hpp"
@@ -98,7 +98,7 @@ TEST_F(MapperCalibrationTest, WhatIsLearnedComesIntoTheMapItsKeyframesAndTheFram
   EXPECT_LT(apart_m(learns, straight), 0.4 * before_m);
   EXPECT_GT(cv::norm(picture, learns.keyframeViews().front().depth_mm, cv::NORM_INF), 5);
   const auto question = learns.takeQuestion();
-  ASSERT_TRUE(question && question->known) << "the closer hears of the corrected pictures";
+  ASSERT_TRUE(question && question->known) << "the closer gets the corrected pictures";
   EXPECT_EQ(question->known->size(), learns.keyframeViews().size());
   EXPECT_EQ(learns.process(seen(kFrames)).outcome, FrameOutcome::fused);
 }
@@ -137,7 +137,7 @@ TEST_F(MapperCalibrationTest, ASavedMapBringsItsCalibrationOrIsCorrectedByTheOne
 }
 
 TEST_F(MapperCalibrationTest, OfTheSensorsErrorOnlyWhatIsLeftIsReckonedWith) {
-  const auto told = [](double left_per_m) {
+  const auto covariance = [](double left_per_m) {
     Mapper mapper(config());
     DepthCalibration calibration = known();
     calibration.left_per_m = left_per_m;
@@ -146,12 +146,12 @@ TEST_F(MapperCalibrationTest, OfTheSensorsErrorOnlyWhatIsLeftIsReckonedWith) {
     for (int i = 0; i < kFrames; ++i) status = mapper.process(seen(i));
     return status.covariance.trace();
   };
-  const double unknown = told(0.0), much = told(0.1), little = told(0.0002);
+  const double unknown = covariance(0.0), much = covariance(0.1), little = covariance(0.0002);
   EXPECT_LT(little, 0.8 * unknown);
   EXPECT_EQ(much, unknown) << "never more than an uncalibrated camera has";
 }
 
-TEST_F(MapperCalibrationTest, SettingsSayWhatMayBeDone) {
+TEST_F(MapperCalibrationTest, SettingsLimitWhatIsDone) {
   Config none = config();
   none.calibration.mode = "none";
   Mapper mapper(none);

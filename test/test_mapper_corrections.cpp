@@ -26,7 +26,7 @@ class MapperCorrectionsTest : public MapperTest {
     }
   }
 
-  /// A loop from the first keyframe to the last, which says that the way was longer.
+  /// A loop from the first keyframe to the last, by which the way was longer.
   static LoopAnswer loopOf(const Mapper& mapper, double longer_m = 0.04) {
     const auto& keyframes = mapper.backEnd().graph().keyframes();
     EXPECT_GT(keyframes.size(), 2U);

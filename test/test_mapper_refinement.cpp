@@ -15,7 +15,7 @@ class MapperRefinementTest : public MapperTest {
     Config c = config();
     c.graph.keyframe_distance_m = 0.06;
     c.graph.keyframe_angle_rad = 0.06;
-    // The room is drawn without systematic errors: constraints are as good as they say.
+    // The room is drawn without systematic errors: constraints are as good as their covariances.
     c.graph.odometry_sigma_m = c.graph.loop_sigma_m = 0.002;
     c.graph.odometry_sigma_rad = c.graph.loop_sigma_rad = 0.002;
     return c;
@@ -91,7 +91,7 @@ TEST_F(MapperRefinementTest, OfACameraThatIsNotKnownNothingIsAligned) {
   EXPECT_EQ(error_m(mapper), before_m);
 }
 
-TEST_F(MapperRefinementTest, OfOneKeyframeItSaysSo) {
+TEST_F(MapperRefinementTest, OneKeyframeIsReportedAsTooFew) {
   Mapper mapper(dense());
   mapper.process({room().frame(0).frame, {}, {}});
   EXPECT_EQ(mapper.refine().text(),

@@ -77,7 +77,7 @@ TEST_F(MapperRetireTest, PicturesGoEverywhereAndPosesStay) {
   for (std::size_t i = 0; i < after.size(); ++i) {
     EXPECT_TRUE(after[i].T_world_camera.isApprox(before[i].T_world_camera, 0.01)) << i;
   }
-  // The closer is told with the next keyframe, and so is a file.
+  // The closer gets it with the next keyframe, and so does a file.
   questions_.clear();
   for (int i = 0; i < kWay && questions_.empty(); ++i) see(mapper, i);
   ASSERT_FALSE(questions_.empty());

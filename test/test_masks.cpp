@@ -33,7 +33,7 @@ TEST(MaskCheck, CountsByHand) {
 }
 
 TEST(MaskCheck, OnlyFoundPartsCount) {
-  // Two people who overlap in the image, one metre apart.
+  // Two people that overlap in the image, one metre apart.
   cv::Mat truth = boxMask({20, 20, 80, 60}), depth(100, 200, CV_32FC1, cv::Scalar(3));
   depth(cv::Rect(20, 20, 40, 60)).setTo(1);
   depth(cv::Rect(60, 20, 40, 60)).setTo(2);
@@ -62,7 +62,7 @@ TEST(MaskCheck, ReadsFolders) {
   EXPECT_THROW(checkMasks(folder + "/truth", folder + "/run"), InputError);
   cv::imwrite(folder + "/truth/mask/1.000000.png", boxMask({0, 0, 100, 100}));
   EXPECT_DOUBLE_EQ(checkMasks(folder + "/truth", folder + "/run").crowded().iou, 1.0);
-  // A sequence without masks has nobody in it.
+  // A sequence without masks has no people in it.
   fs::remove_all(folder + "/truth/mask");
   std::ofstream(folder + "/truth/rgb.txt") << "1.0 rgb/1.png\n";
   EXPECT_DOUBLE_EQ(checkMasks(folder + "/truth", folder + "/run").falseFraction(), 0.5);

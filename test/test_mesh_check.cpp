@@ -53,7 +53,7 @@ TEST(MeshCheck, SamplesHaveTheAreaOfTheMesh) {
   }
 }
 
-TEST(MeshCheck, TellsHowFarAndHowMuch) {
+TEST(MeshCheck, MeasuresDistanceAndArea) {
   const MeshScore score = check(rectangle(0.5F, 0.015F), oneSurfel({0.1F, 0.1F, 0}));
   EXPECT_NEAR(score.median_m, 0.015, 1e-4);
   EXPECT_NEAR(score.p95_m, 0.015, 1e-4);

@@ -46,7 +46,7 @@ TEST_F(MeshFile, PlyIsReadAsItWasWritten) {
   EXPECT_EQ(read.normals, mesh.normals);
   EXPECT_EQ(read.colors, mesh.colors);
   EXPECT_EQ(read.triangles, mesh.triangles);
-  EXPECT_EQ(loadPoints(folder / "a.ply").size(), 4U);  // whoever reads points reads the vertices
+  EXPECT_EQ(loadPoints(folder / "a.ply").size(), 4U);  // readers of points read the vertices
 }
 
 TEST_F(MeshFile, ObjHasALineForEachThing) {
@@ -61,7 +61,7 @@ TEST_F(MeshFile, ObjHasALineForEachThing) {
   EXPECT_EQ(last, "f 1//1 3//3 4//4");
 }
 
-TEST_F(MeshFile, GlbIsWhatTheSpecificationAsksFor) {
+TEST_F(MeshFile, GlbFollowsTheSpecification) {
   saveMesh(folder / "a.glb", mesh);
   const std::string file = readFile(folder / "a.glb");
   const auto word = [&](std::size_t at) {

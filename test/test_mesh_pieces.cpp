@@ -71,7 +71,7 @@ std::vector<Triangle> trianglesOf(const TriangleMesh& mesh) {
   return out;
 }
 
-/// What somebody has who takes in all updates.
+/// Keeps what all updates together give.
 class Listener {
  public:
   void take(const std::vector<MeshPieces::Piece>& pieces) {

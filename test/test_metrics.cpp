@@ -61,7 +61,7 @@ TEST(Statistics, OfAHandMadeList) {
 }
 
 TEST(MatchStamps, TakesTheClosestFirstAndEachOnce) {
-  // 100 is nearer to 101 than 98 is, so 98 gets what is left for it: 95.
+  // 100 is nearer to 101 than 98 is, so 98 gets 95, which is left.
   const auto pairs = matchStamps({98, 100}, {101, 95}, 5);
   ASSERT_EQ(pairs.size(), 2U);
   EXPECT_EQ(pairs[0], std::make_pair(std::size_t{0}, std::size_t{1}));

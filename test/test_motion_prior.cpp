@@ -39,7 +39,7 @@ TEST(MotionPrior, WhatContradictsIsNotCombined) {
   EXPECT_FALSE(combined({motion(0.1, 0), covariance, true}, {motion(0.1, 0.3), covariance, true}));
 }
 
-TEST(MotionPrior, OneThatKnowsTheTurnAloneLeavesTheShift) {
+TEST(MotionPrior, OneOfTheTurnAloneLeavesTheShift) {
   const MotionPrior seen{motion(0.1, 0.02), independentCovariance(0.05, 0.05), true};
   const MotionPrior turn{motion(0, 0.05), independentCovariance(10, 0.0005), false};
   const auto both = combined(seen, turn);

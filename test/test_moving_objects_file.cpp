@@ -55,7 +55,7 @@ TEST(MovingObjectsFile, NothingThatMovesIsAFileToo) {
   std::filesystem::remove(kFile);
 }
 
-TEST(MovingObjectsFile, WithoutAFolderItSaysSo) {
+TEST(MovingObjectsFile, WithoutAFolderItIsAnError) {
   EXPECT_THROW(MovingObjectsFile("/nowhere/moving_objects.json"), InputError);
 }
 

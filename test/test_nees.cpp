@@ -23,8 +23,7 @@ struct Walk {
   std::vector<UncertainPose> poses;
 };
 
-/// A walk whose poses are each off by normal noise of sigmas(), and said to be so by `said` *
-/// sigmas().
+/// A walk whose poses are each off by normal noise of sigmas(); reported are `said` * sigmas().
 Walk walk(double said) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -58,7 +57,7 @@ TEST(ChiSquare, QuantilesAreThoseOfTheTables) {
 
 class Nees : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(Nees, AnHonestCovarianceIsInTheBandAsOftenAsTheBandSays) {
+TEST_P(Nees, ACorrectCovarianceIsInTheBandAsOftenAsExpected) {
   const Walk r = walk(1.0);
   const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
   EXPECT_NEAR(share.mean, 6.0, 0.2);

@@ -92,7 +92,7 @@ TEST(OccupancyGrid, WhatStandsIsOccupiedWhatWasSeenIsFreeTheRestIsUnknown) {
   EXPECT_EQ(gridOf(room(), {}).count(OccupancyGrid::kFree), 0U);
 }
 
-TEST(OccupancyGrid, ALookUnderATableTellsNothingOfItsTop) {
+TEST(OccupancyGrid, ALookUnderATableShowsNothingOfItsTop) {
   SeenPoints low;
   low.from = {3.5F, 2.2F, 0.3F};
   for (int i = 0; i < 100; ++i) low.points.emplace_back(0.005F * static_cast<float>(i), 2.2F, 0.0F);

@@ -18,8 +18,8 @@ PinholeCamera camera(int width, int height, double focal_px, double cx, double c
   return c;
 }
 
-/// Where a ray meets the image tells its pixel: red is the column's direction, green the row's, in
-/// 1/200 from -0.6 on. Depth is 1000 + the same of the column.
+/// Colours encode the ray of a pixel: red is the column's direction, green the row's, in 1/200 from
+/// -0.6 on. Depth is 1000 + red.
 double coded(double slope) { return 200 * (slope + 0.6); }
 
 RgbdFrame frameOf(const PinholeCamera& color, const PinholeCamera& depth) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is meant as a time lasts as long at any frame rate.
+// Durations are the same at any frame rate.
 #include "posefusion/core/pace.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::int64_t stampAt(int i, double rate_hz) {
 
 Pace paceOf(double rate_hz) { return {1.0 / rate_hz}; }
 
-/// How long (s) it takes until `done`, called for each frame, says so; at most five seconds.
+/// How long (s) it takes until `done`, called for each frame, returns true; at most five seconds.
 double secondsUntil(double rate_hz, const std::function<bool()>& done) {
   int frames = 1;
   while (!done() && frames < 5 * rate_hz) ++frames;
@@ -39,7 +39,7 @@ void expectTheSameAtAnyRate(const std::function<double(double)>& seconds) {
   }
 }
 
-/// How long (s) a scene is fused, after `before_s` of another one, until the map is as wanted.
+/// How long (s) a scene is fused, after `before_s` of another one, until the map is as required.
 double secondsOfChange(double rate_hz, WorkingFrame before, double before_s, WorkingFrame after,
                        const std::function<bool(const SurfelMap&)>& done) {
   SurfelMap map{MapConfig{}};
@@ -65,7 +65,7 @@ TEST(Pace, CountsAtLeastOneFrameAndNoMoreThanAnIntegerHolds) {
   EXPECT_GT(paceOf(1000.0).worth(), 0.0F);
 }
 
-TEST(PaceMeter, SaysThirtyHertzUntilItKnows) {
+TEST(PaceMeter, IsThirtyHertzUntilItIsMeasured) {
   PaceMeter meter;
   EXPECT_EQ(meter.add(5).framesIn(1.0), 30);
   EXPECT_EQ(meter.add(5 + 100000000).framesIn(1.0), 10);
@@ -105,7 +105,7 @@ TEST(PaceOfTheMap, ASurfelIsStableAfterTheSameTime) {
   });
 }
 
-TEST(PaceOfTheMap, WhoComesBeforeAKnownWallIsStableAfterTheSameTime) {
+TEST(PaceOfTheMap, WhatComesBeforeAKnownWallIsStableAfterTheSameTime) {
   expectTheSameAtAnyRate([](double rate_hz) {
     return secondsOfChange(rate_hz, scene(3.0), 1.0, scene(3.0, 1.5),
                            [](const SurfelMap& map) { return stableNear(map, 1.5) > 0; });

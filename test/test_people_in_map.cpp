@@ -78,7 +78,7 @@ TEST(PeopleInMap, VelocityIsThatInTheMapHoweverTheCameraMoves) {
   }
 }
 
-TEST(PeopleInMap, WhoIsNotSeenIsNotPlaced) {
+TEST(PeopleInMap, APersonThatIsNotSeenIsNotPlaced) {
   Scene scene(200);
   PeopleInMap people;
   TrackedPerson unseen = scene.tracked;
@@ -90,7 +90,7 @@ TEST(PeopleInMap, WhoIsNotSeenIsNotPlaced) {
   EXPECT_EQ(found[0].id, 3);
 }
 
-TEST(PeopleInMap, AfterALossNobodyHasAVelocity) {
+TEST(PeopleInMap, AfterALossNoPersonHasAVelocity) {
   PeopleInMap people;
   const Scene before(100), after(400);
   people.place({before.tracked}, before.grid, Eigen::Isometry3d::Identity(), kFrame_ns);

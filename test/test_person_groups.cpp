@@ -57,14 +57,14 @@ int ownerAt(const People& people, int x, int y) {
   return people.mask.owner.at<uchar>(y / 2, x / 2);
 }
 
-TEST(PersonGroups, NobodyIsNobody) {
+TEST(PersonGroups, AnEmptyImageHasNoPeople) {
   const People people = Drawn({}).group();
   EXPECT_TRUE(people.detected);
   EXPECT_TRUE(people.people.empty());
   EXPECT_EQ(cv::countNonZero(people.mask.owner), 0);
 }
 
-TEST(PersonGroups, KeepsTwoApartWhoStandSideBySideOrOneBehindTheOther) {
+TEST(PersonGroups, KeepsTwoPeopleApartSideBySideOrOneBehindTheOther) {
   const Body left{{20, 20, 28, 80}, 2.0F, 6}, right{{60, 20, 28, 80}, 2.0F, 6};
   const Body behind{{36, 20, 28, 80}, 3.5F, 6};
   for (const auto& bodies : {std::vector<Body>{left, right}, std::vector<Body>{behind, left}}) {
@@ -99,7 +99,7 @@ TEST(PersonGroups, AMaskWithoutJointsIsAChair) {
   const People people = Drawn({{{20, 20, 28, 80}, 2.0F, 0}}).group();
   EXPECT_TRUE(people.people.empty());
   EXPECT_EQ(cv::countNonZero(people.mask.owner), 0);
-  EXPECT_GT(cv::countNonZero(people.mask.probability), 0) << "who is known may be there";
+  EXPECT_GT(cv::countNonZero(people.mask.probability), 0) << "a known person may be there";
 }
 
 TEST(PersonGroups, FewJointsAreAGuess) {
@@ -110,7 +110,7 @@ TEST(PersonGroups, FewJointsAreAGuess) {
   }
 }
 
-TEST(PersonGroups, OfWhomTheBorderCutsTheMaskCountsToo) {
+TEST(PersonGroups, TheMaskCountsWhereTheBorderCutsAPerson) {
   const cv::Rect inside(20, 20, 28, 80), cut(0, 20, 28, 80), small(0, 20, 8, 20);
   EXPECT_NEAR(Drawn({{inside, 2.0F, 1}}).group().people.at(0).score, 0.8 / 6, 1e-5);
   EXPECT_NEAR(Drawn({{cut, 2.0F, 1}}).group().people.at(0).score, 0.95 - 0.2, 1e-5);
@@ -136,7 +136,7 @@ TEST(PersonGroups, SurvivesNonsense) {
     drawn.maps.offset_y.setTo(-value);
     EXPECT_LE(drawn.group().people.size(), 15U);
     drawn.small_m.setTo(0.0F);
-    EXPECT_TRUE(drawn.group().people.empty()) << "without depth there is nobody";
+    EXPECT_TRUE(drawn.group().people.empty()) << "without depth there is no person";
   }
 }
 

@@ -89,7 +89,7 @@ TEST(EmbeddedDetector, LooksAtEveryFrameOfAnySize) {
   }
 }
 
-TEST(EmbeddedDetector, DepthThatShowsNothingShowsNobody) {
+TEST(EmbeddedDetector, EmptyDepthShowsNoPerson) {
   const auto detector = makePoseDetector(configOf(kNear), {});
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinite = std::numeric_limits<float>::infinity();
@@ -136,7 +136,7 @@ TEST(PoseConfig, ANetworkLooksOftenerWhereItIsAlone) {
   EXPECT_EQ(lookInterval_frames(config), 7);
 }
 
-/// The weights that come with the package are whole and see nobody where there is nothing.
+/// The weights that come with the package are complete and find no person in an empty image.
 TEST(PersonModel, ThePackagesOwnIsThere) {
   PersonModel model(packagedPersonModel());
   const cv::Mat wall(kDepthInputHeight, kDepthInputWidth, CV_32FC1, cv::Scalar(3.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a bare wall tells: nothing but noise.
+// A bare wall shows nothing but noise.
 #include "posefusion/frame/picture_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ cv::Mat textured() {
   return texture;
 }
 
-/// Of a wall with a shade from side to side, and this noise.
+/// A wall with a gradient from side to side, and this noise.
 cv::Mat bareWall(std::uint64_t seed, double noise = kNoise) {
   cv::Mat wall(kSize, CV_32FC1), errors(kSize, CV_32FC1);
   for (int u = 0; u < kSize.width; ++u) wall.col(u).setTo(100 + 0.1 * u);
@@ -44,7 +44,7 @@ TEST(PictureNoise, IsThatOfTheQuietPlaces) {
   cv::Mat bytes;
   bareWall(1).convertTo(bytes, CV_8U);
   EXPECT_NEAR(pictureNoise(bytes), kNoise, 0.15 * kNoise);
-  EXPECT_EQ(pictureNoise(cv::Mat(8, 8, CV_8UC1, cv::Scalar(7))), 0) << "too small to tell";
+  EXPECT_EQ(pictureNoise(cv::Mat(8, 8, CV_8UC1, cv::Scalar(7))), 0) << "too small to measure";
 }
 
 RgbdFrame frameOf(const cv::Mat& grey, std::int64_t stamp_ns) {
@@ -85,7 +85,7 @@ TrackingResult aligned(const cv::Mat& before, const cv::Mat& after) {
   return track(frame.frame, model.points, start, TrackingConfig{});
 }
 
-TEST(PictureNoise, SaysNothingOfTheMotionAlongAWall) {
+TEST(PictureNoise, GivesNoMotionAlongAWall) {
   const TrackingResult wall = aligned(bareWall(1), bareWall(2));
   EXPECT_EQ(wall.free_directions, 3) << "along it, and about its normal";
   const TrackingResult picture =

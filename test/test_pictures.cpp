@@ -148,7 +148,7 @@ TEST(Plan, UpIsThatOfTheCameraOnTheNearestAxis) {
   EXPECT_TRUE(upOf(walk).isApprox(Eigen::Vector3d::UnitZ(), 0));
   for (auto& pose : walk) pose.T_world_camera.rotate(expSo3({0.3, 0, 0}));  // looks down a little
   EXPECT_TRUE(upOf(walk).isApprox(Eigen::Vector3d::UnitZ(), 0));
-  const Eigen::Matrix3d R = expSo3({0.7, 0.4, 0});  // a world that nobody levelled
+  const Eigen::Matrix3d R = expSo3({0.7, 0.4, 0});  // a world that is not level
   walk = straightWalk(1);
   for (auto& pose : walk) pose.T_world_camera = R * pose.T_world_camera;
   EXPECT_TRUE(upOf(walk).isApprox(R.col(2), 1e-9));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where somebody says that a lost camera is.
+// A user's hint of the place of a lost camera.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ class PlaceHintTest : public MapperTest {
     ASSERT_EQ(status.state, TrackingState::lost);
     mapper.takeQuestion();
   }
-  /// Where a camera is looked for beside its last pose.
+  /// Where a camera is searched for beside its last pose.
   std::vector<MapPose> lookedAt() {
     RgbdFrame frame = room().frame(9).frame;
     frame.stamp_ns = room().stamp(next++);
@@ -44,8 +44,8 @@ class PlaceHintTest : public MapperTest {
     mapper.take(nowhere);
     return question && question->place ? question->place->elsewhere : std::vector<MapPose>();
   }
-  /// The camera `ahead_m` before its last pose, 3 m too high and turned, as somebody who points at
-  /// a plan has it.
+  /// The camera `ahead_m` before its last pose, 3 m too high and turned, as a user gives it by
+  /// pointing at a plan.
   Isometry3d pointed(double x_m, double y_m) const {
     return Eigen::Translation3d(x_m, y_m, 3) * Eigen::AngleAxisd(0.7, Vector3d::UnitZ()) *
            bodyFromOptical();
@@ -74,7 +74,7 @@ TEST_F(PlaceHintTest, ALostCameraIsLookedForThereTooWithHeightAndTiltOfTheNeares
   EXPECT_EQ(lookedAt().size(), 1U) << "until it is found";
 }
 
-TEST_F(PlaceHintTest, AWrongPlaceIsNotBelieved) {
+TEST_F(PlaceHintTest, AWrongPlaceIsRejected) {
   lose();
   mapper.hint(pointed(40, 40));
   LoopWorker worker(config().loop, config().tracking, DepthSensor());
@@ -93,7 +93,7 @@ TEST_F(PlaceHintTest, AWrongPlaceIsNotBelieved) {
   EXPECT_EQ(mapper.hint(pointed(1, 1)), "the camera is not lost: nothing changes");
 }
 
-TEST_F(PlaceHintTest, WhatHelpsNobodyIsRefused) {
+TEST_F(PlaceHintTest, AHintThatCannotHelpIsRefused) {
   EXPECT_EQ(mapper.hint(pointed(1, 1)), "the camera is not lost: nothing changes");
   Isometry3d T = pointed(1, 1);
   T.translation().x() = std::numeric_limits<double>::quiet_NaN();
@@ -102,7 +102,7 @@ TEST_F(PlaceHintTest, WhatHelpsNobodyIsRefused) {
   EXPECT_THROW(empty.hint(pointed(1, 1)), InputError);
 }
 
-TEST_F(PlaceHintTest, AnotherMapKnowsNothingOfIt) {
+TEST_F(PlaceHintTest, AnotherMapDoesNotKeepIt) {
   lose();
   mapper.hint(pointed(1, 1));
   mapper.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether alignments by a camera that is off are as far from the truth as they say.
+// Whether alignments by a camera with systematic errors are as far from the truth as reported.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -66,7 +66,7 @@ class PoseCovarianceTest : public MapperTest {
   ModelPyramid model_;
 };
 
-TEST_F(PoseCovarianceTest, WhatDoesNotAverageOutPullsAsHardAsTold) {
+TEST_F(PoseCovarianceTest, SystematicErrorsPullAsHardAsPredicted) {
   const DepthSensor sensor = sensorWith(kSystematic_1_m);
   const TermSettings settings = settingsOf(sensor);
   const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
@@ -75,19 +75,19 @@ TEST_F(PoseCovarianceTest, WhatDoesNotAverageOutPullsAsHardAsTold) {
     return buildNormalEquations(model_.level(0), frame.levels[0], still, settings).gradient();
   };
   const WorkingFrame straight = seen(DepthField(), sensor);
-  const PlaceErrors told = placeErrors(model_.level(0), straight.levels[0], still, settings);
+  const PlaceErrors predicted = placeErrors(model_.level(0), straight.levels[0], still, settings);
   const Vector6d none = pull(DepthField());
   double nees = 0;
   for (unsigned seed = 0; seed < kCameras; ++seed) {
     const Vector6d g = pull(randomField(kSystematic_1_m, seed)) - none;
-    nees += g.dot(told.gradient.ldlt().solve(g)) / kCameras;
+    nees += g.dot(predicted.gradient.ldlt().solve(g)) / kCameras;
   }
   // 6, give or take 0.55, had places the edges and the shape of a field's nodes.
   EXPECT_GT(nees, 3.5);
   EXPECT_LT(nees, 8.5);
 }
 
-TEST_F(PoseCovarianceTest, ItGrowsWithTheErrorThatIsBelievedAndIsNoneWithoutIt) {
+TEST_F(PoseCovarianceTest, ItGrowsWithTheAssumedErrorAndIsNoneWithoutIt) {
   const Matrix6d once = aligned(kSystematic_1_m).systematic;
   const Matrix6d twice = aligned(2.0 * kSystematic_1_m).systematic;
   EXPECT_GT(once.norm(), 0.0);
@@ -95,7 +95,7 @@ TEST_F(PoseCovarianceTest, ItGrowsWithTheErrorThatIsBelievedAndIsNoneWithoutIt) 
   EXPECT_EQ(aligned(0.0).systematic.norm(), 0.0);
 }
 
-TEST_F(PoseCovarianceTest, WhatIsToldOfAPoseAtRestIsLessThanInATurn) {
+TEST_F(PoseCovarianceTest, ItIsSmallerAtRestThanInATurn) {
   Mapper rests(config()), moves(config());
   const RgbdFrame first = room().frame(0).frame;
   FrameStatus at_rest, in_motion;

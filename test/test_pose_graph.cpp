@@ -107,7 +107,7 @@ TEST(PoseGraph, LoopsThatOnlyConfirmHoldAndMoveNothing) {
   EXPECT_EQ(graph.version(), before.version());
   EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 2);
   EXPECT_EQ(worstDistance(graph, truth), 0);
-  // One that is not met, but too unsure to move anything by more than any loop is off.
+  // A loop that is not met, but too uncertain to move anything by more than the error of a loop.
   PoseConstraint unsure = loopOf(truth, 30, 33);
   unsure.T_from_to = unsure.T_from_to * motion(1.5 * graph.config().loop_sigma_m, 0, 0, 0);
   unsure.covariance = Matrix6d::Identity() * 0.0025;
@@ -115,7 +115,7 @@ TEST(PoseGraph, LoopsThatOnlyConfirmHoldAndMoveNothing) {
   EXPECT_FALSE(graph.optimise().accepted);
   EXPECT_EQ(graph.constraints().size(), before.constraints().size() + 3);
   EXPECT_EQ(worstDistance(graph, truth), 0);
-  // With one that is not met, all have their say.
+  // With a loop that is not met, all loops count.
   PoseConstraint loop = loopOf(truth, 0, 58);
   loop.T_from_to = loop.T_from_to * motion(3 * graph.config().loop_sigma_m, 0, 0, 0);
   graph.addLoop(loop);

@@ -81,7 +81,7 @@ PoseGraph reckonedPieces(const Poses& truth, const std::vector<int>& firsts) {
   return graph;
 }
 
-/// As it would be were the end of the loop in keyframe `is` of the graph.
+/// The loop between other keyframes of the graph.
 PoseConstraint between(PoseConstraint loop, int from, int to) {
   loop.from = from;
   loop.to = to;

@@ -59,7 +59,7 @@ TEST_P(Reconsider, WrongLoopsThatHoldGoWhenMoreTrueOnesContradictThem) {
 
 INSTANTIATE_TEST_SUITE_P(Directions, Reconsider, ::testing::Values(1U, 2U, 3U, 4U, 5U, 6U));
 
-TEST(Reconsidered, SoftOdometryThatBendsBetweenBothIsNoReasonToBelieveBoth) {
+TEST(Reconsidered, SoftOdometryThatBendsBetweenBothIsNoReasonToAcceptBoth) {
   // Between the wrong stretch and the true one lie a few steps, which could take up all of it.
   const Poses truth = figureEight();
   PoseGraph graph = graphOf(drifted(truth, kYawDrift));
@@ -72,7 +72,7 @@ TEST(Reconsidered, SoftOdometryThatBendsBetweenBothIsNoReasonToBelieveBoth) {
   EXPECT_LT(worstDistance(graph, truth), 0.3);
 }
 
-TEST(Reconsidered, TrueLoopsThatHoldStayWhateverFewWrongOnesSay) {
+TEST(Reconsidered, TrueLoopsThatHoldStayDespiteAFewWrongOnes) {
   const Poses truth = figureEight();
   PoseGraph graph = graphOf(drifted(truth, kYawDrift));
   for (int k = 0; k < 10; ++k) graph.close({loopOf(truth, k, 71 + k)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keyframes that others stand for: a graph of rounds walked again and again.
+// Keyframes that others represent: a graph of circles walked again and again.
 #include <set>
 
 #include "graph_scene.hpp"
@@ -23,7 +23,7 @@ GraphConfig configOf(int keyframes_at_a_place) {
   return config;
 }
 
-/// Rounds tracked with a drift, and closed by the pictures of each place.
+/// Circles tracked with a drift, and closed by the pictures of each place.
 class Rounds {
  public:
   explicit Rounds(int keyframes_at_a_place) : graph_(configOf(keyframes_at_a_place)) {}
@@ -118,7 +118,7 @@ TEST(PoseGraphRetire, NoPoseChangesAndNoConstraintIsMissedByMore) {
     EXPECT_FALSE(graph.keyframes()[static_cast<std::size_t>(c.from)].isRetired());
     EXPECT_FALSE(graph.keyframes()[static_cast<std::size_t>(c.to)].isRetired());
   }
-  // What a file is read with takes it.
+  // The constructor that reads a file accepts it.
   EXPECT_NO_THROW(
       PoseGraph(GraphConfig(), graph.keyframes(), graph.constraints(), graph.version()));
 }
@@ -148,7 +148,7 @@ TEST(PoseGraphRetire, FollowsItsCarrierThroughCorrections) {
   Rounds rounds(3);
   rounds.walk(6);
   PoseGraph& graph = rounds.graph();
-  // The end of the last round is wrong by 4 cm: tracked on without loops, then closed.
+  // The end of the last circle is wrong by 4 cm: tracked on without loops, then closed.
   Poses truth = rounds.truth();
   const auto last = static_cast<int>(truth.size()) - 1;
   const Eigen::Isometry3d off = motion(0, 0, 0.04, 0);

@@ -64,7 +64,7 @@ TEST(PoseGraphSteps, AStepThatLoopsLeadPastWaitsForTheSolver) {
   EXPECT_TRUE(graph.retrack(stepOf(truth, 44)).accepted) << "the loop ends before it";
 }
 
-TEST(PoseGraphSteps, PicturesThatContradictTrackingAreNotBelieved) {
+TEST(PoseGraphSteps, PicturesThatContradictTrackingAreRejected) {
   const Poses truth = corridor();
   PoseGraph graph = graphOf(truth);
   const PoseGraph before = graph;

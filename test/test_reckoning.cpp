@@ -50,7 +50,7 @@ TEST(Reckoning, GoesOnByItsSteps) {
   EXPECT_NEAR(sigmaM(*reckoning.pose()), 0.002, 1e-9) << "known again";
 }
 
-TEST(Reckoning, WhileNothingTellsTheErrorGrowsWithTheTimeAndStays) {
+TEST(Reckoning, WithoutMeasurementsTheErrorGrowsWithTheTimeAndStays) {
   Reckoning often, once;
   for (Reckoning* reckoning : {&often, &once}) reckoning->know(ahead(0), kStep);
   for (int i = 0; i < 30; ++i) often.pass(1.0 / 30);
@@ -58,7 +58,7 @@ TEST(Reckoning, WhileNothingTellsTheErrorGrowsWithTheTimeAndStays) {
   EXPECT_NEAR(sigmaM(*often.pose()), sigmaM(*once.pose()), 1e-9) << "whatever the rate";
   EXPECT_GT(sigmaM(*once.pose()), 0.5);
   once.move(ahead(0.01), kStep, 0.1);
-  EXPECT_GT(sigmaM(*once.pose()), 0.5) << "what happened meanwhile is not told afterwards";
+  EXPECT_GT(sigmaM(*once.pose()), 0.5) << "motion without measurements is not known afterwards";
   for (int i = 0; i < 100; ++i) once.pass(1);
   EXPECT_LT(std::sqrt(once.pose()->covariance(3, 3)), M_PI) << "no more than all around";
 }

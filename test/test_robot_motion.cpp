@@ -18,7 +18,7 @@ std::int64_t stampAt(double s) {
   return 1'000'000'000 + static_cast<std::int64_t>(std::lround(1e9 * s));
 }
 
-/// Where the camera is: it stands for a second, then walks and looks around.
+/// The true pose: the camera rests for a second, then walks and looks around.
 Eigen::Isometry3d poseAt(double s) {
   const double t = std::max(0.0, s - 1);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -32,12 +32,13 @@ Eigen::Vector3d rateAt(double s) {
   return logSo3(poseAt(s - h).linear().transpose() * poseAt(s + h).linear()) / (2 * h);
 }
 
-/// Odometry at 50 Hz as `told` has it.
-RobotMotion walked(const std::function<Eigen::Isometry3d(double)>& told, double until = kSeconds) {
+/// Odometry at 50 Hz, its poses by `odometry`.
+RobotMotion walked(const std::function<Eigen::Isometry3d(double)>& odometry,
+                   double until = kSeconds) {
   RobotMotion robot((RobotConfig()));
   double sent = 0;
   for (double s = 0.1; s < until; s += 1.0 / 30) {
-    for (; sent < s + 0.02; sent += 0.02) robot.addOdometry({stampAt(sent), told(sent)});
+    for (; sent < s + 0.02; sent += 0.02) robot.addOdometry({stampAt(sent), odometry(sent)});
     robot.compare(stampAt(s - 1.0 / 30), stampAt(s), poseAt(s - 1.0 / 30).inverse() * poseAt(s),
                   kSeen);
   }
@@ -50,7 +51,7 @@ double errorOf(const MotionPrior& prior, double from, double to) {
       .norm();
 }
 
-TEST(RobotMotion, OdometryThatTellsWhatIsSeenIsBelieved) {
+TEST(RobotMotion, OdometryThatAgreesWithTheImagesIsUsed) {
   const Eigen::Isometry3d anywhere = poseAt(3.3) * poseAt(2);
   RobotMotion robot = walked([&](double s) { return anywhere * poseAt(s); });
   ASSERT_TRUE(robot.odometry().is_believed);
@@ -69,22 +70,22 @@ TEST(RobotMotion, StandingStillShowsNothing) {
   EXPECT_FALSE(robot.odometry().is_believed);
 }
 
-/// Of the motions that a source tells in its last second, those within three of their sigmas.
+/// Share of the motions reported in the last second that are within three of their sigmas.
 double shareWithin(RobotMotion& robot, double until) {
-  int told = 0, within = 0;
+  int motions = 0, within = 0;
   for (double s = until - 1; s < until - 0.04; s += 0.02) {
     const auto prior = robot.between(stampAt(s), stampAt(s + 1.0 / 30));
     if (!prior) continue;
     const Vector6d error =
         logSe3(prior->T_before_after.inverse() * poseAt(s).inverse() * poseAt(s + 1.0 / 30));
-    ++told;
+    ++motions;
     within += (error.array().square() < 9 * prior->covariance.diagonal().array()).all() ? 1 : 0;
   }
-  return told > 0 ? static_cast<double>(within) / told : 1;
+  return motions > 0 ? static_cast<double>(within) / motions : 1;
 }
 
-/// Ten kinds of what a robot sends when something is wrong with it.
-TEST(RobotMotion, GarbageIsNotBelievedOrSaysSo) {
+/// Ten kinds of wrong odometry.
+TEST(RobotMotion, GarbageIsRejectedOrHasALargeCovariance) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const auto turned = [](double yaw) {
@@ -128,28 +129,28 @@ TEST(RobotMotion, GarbageIsNotBelievedOrSaysSo) {
          return T;
        }},
   };
-  for (const auto& [name, told] : kinds) {
+  for (const auto& [name, odometry] : kinds) {
     for (double until = 0.5; until <= kSeconds; until += 0.5) {
-      RobotMotion robot = walked(told, until);
+      RobotMotion robot = walked(odometry, until);
       if (!robot.odometry().is_believed) continue;
-      // Else it must say itself that it is bad.
+      // If it is used, its covariance must cover the error.
       EXPECT_GE(shareWithin(robot, until), 0.9) << name << " after " << until << " s";
     }
   }
 }
 
-TEST(RobotMotion, IsNotBelievedAnyMoreOnceItGoesWrongAndIsAgainOnceItIsRight) {
-  const auto told = [](double s) {
+TEST(RobotMotion, IsRejectedOnceItGoesWrongAndUsedAgainOnceItIsRight) {
+  const auto stopping = [](double s) {
     Eigen::Isometry3d T = poseAt(std::min(s, 4.0));
     if (s > 5) T = T * poseAt(5).inverse() * poseAt(s);
     return T;
   };
-  EXPECT_TRUE(walked(told, 3.9).odometry().is_believed);
-  EXPECT_FALSE(walked(told, 4.6).odometry().is_believed) << "it stopped";
-  EXPECT_TRUE(walked(told, 8).odometry().is_believed);
+  EXPECT_TRUE(walked(stopping, 3.9).odometry().is_believed);
+  EXPECT_FALSE(walked(stopping, 4.6).odometry().is_believed) << "it stopped";
+  EXPECT_TRUE(walked(stopping, 8).odometry().is_believed);
 }
 
-TEST(RobotMotion, ErrorsThatAreLargerThanPromisedAreTold) {
+TEST(RobotMotion, ErrorsLargerThanConfiguredRaiseTheCovariance) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   Eigen::Isometry3d T = poseAt(0);
@@ -207,7 +208,7 @@ RobotMotion withImu(const Eigen::Vector3d& bias, double until,
 
 const auto kAtRest = [](double) { return Eigen::Vector3d(0, -9.81, 0); };
 
-TEST(RobotMotion, AnImuTellsTheTurnAndItsBiasIsLearned) {
+TEST(RobotMotion, AnImuMeasuresTheTurnAndItsBiasIsLearned) {
   const Eigen::Vector3d bias(0.02, -0.03, 0.01);
   RobotMotion robot = withImu(bias, kSeconds, kAtRest);
   ASSERT_TRUE(robot.imu().is_believed);
@@ -219,7 +220,7 @@ TEST(RobotMotion, AnImuTellsTheTurnAndItsBiasIsLearned) {
   EXPECT_TRUE(prior->has_shift) << "of the odometry";
 }
 
-TEST(RobotMotion, WhatTheSensorCannotMeasureIsNotTold) {
+TEST(RobotMotion, WhatTheSensorCannotMeasureIsNotReported) {
   RobotConfig config;
   config.gyro_full_scale_rad_s = 0.5;
   ImuTrack imu(config);
@@ -229,7 +230,7 @@ TEST(RobotMotion, WhatTheSensorCannotMeasureIsNotTold) {
   EXPECT_FALSE(imu.between(stampAt(1.95), stampAt(2.05)));
 }
 
-TEST(RobotMotion, LegsTellNothingInAFallUntilTheyAgreeAgain) {
+TEST(RobotMotion, LegsAreNotUsedInAFallUntilTheyAgreeAgain) {
   const auto falls = [](double s) {
     return Eigen::Vector3d(0, s > 6 && s < 6.3 ? -0.5 : -9.81, 0);
   };

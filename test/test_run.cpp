@@ -106,7 +106,7 @@ TEST(RunPipeline, GivesWhatOneThreadGivesToTheBit) {
   }
 }
 
-TEST(RunPipeline, StopsWhenToldAndDoesNotReadFarAhead) {
+TEST(RunPipeline, StopsOnRequestAndDoesNotReadFarAhead) {
   SimulatedSource source;
   const auto pipeline = makePipeline();
   int done = 0;
@@ -155,7 +155,7 @@ TEST(BadDepth, AllZeroOrAllNanIsNotFusedAndTrackingGoesOnAfterIt) {
     const Result result = runWithDepth(depth);
     for (std::size_t i = 5; i < 10; ++i) {
       EXPECT_EQ(result.outcomes[i], FrameOutcome::no_depth) << i;
-      // Corners whose places are known carry the pose.
+      // Corners with known positions carry the pose.
       EXPECT_LT((result.poses[i] - sequence().pose(static_cast<int>(i)).matrix()).norm(), 0.02)
           << i;
     }

@@ -61,7 +61,7 @@ TEST(RunFolder, WhatIsDiscardedLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder / "output"));
 }
 
-TEST(RunFolder, LatestLeadsToTheRunThatSaidSoLast) {
+TEST(RunFolder, LatestLeadsToTheLastRun) {
   const TemporaryFolder folder;
   for (const std::string text : {"first", "second"}) {
     const RunFolder run(folder / "output");
@@ -106,7 +106,7 @@ TEST(RunFolder, WhatCannotBeWrittenIsNamed) {
   }
 }
 
-TEST(RunFolder, LowSpaceIsSaid) {
+TEST(RunFolder, LowSpaceIsReported) {
   const TemporaryFolder folder;
   const RunFolder run(folder / "output");
   EXPECT_EQ(run.lowSpace(0), "");

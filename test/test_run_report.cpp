@@ -91,7 +91,7 @@ TEST(RunStatistics, MinutesOfTheRecordingHaveTheirTimesAndLoopsCount) {
   EXPECT_EQ(minutes[0].median_ms, 16);
   EXPECT_EQ(minutes[1].median_ms, 0);
   EXPECT_EQ(minutes[2].median_ms, 20);
-  EXPECT_EQ(minutes[2].p99_ms, 517) << "a correction that holds up few frames is told";
+  EXPECT_EQ(minutes[2].p99_ms, 517) << "a correction that holds up few frames is reported";
 }
 
 TEST(RunStatistics, LoopsTakeTimeInTheChainAndBesideIt) {
@@ -192,7 +192,7 @@ TEST_F(RunReportTest, TrajectoryHasTheLocatedFramesAlone) {
   EXPECT_NEAR(written[7].T_world_camera.translation().y(), -0.64, 1e-9) << "to the right, z up";
 }
 
-TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
+TEST_F(RunReportTest, OfAChainElsewhereItReportsWhatIsKnown) {
   ProcessedFrame frame = frameAt(30, FrameOutcome::fused);
   frame.seen.gate_ms = frame.segmentation_ms = std::nan("");
   RunStatistics statistics;
@@ -215,10 +215,10 @@ TEST_F(RunReportTest, OfAChainElsewhereItSaysWhatIsKnown) {
   EXPECT_FALSE(std::filesystem::exists(folder / "trajectory.txt")) << "the chain has written it";
 }
 
-TEST_F(RunReportTest, WhatWasToldAtTheTimeIsHeldAgainstTheTruthToo) {
+TEST_F(RunReportTest, LivePosesAreComparedWithTheTruthToo) {
   EXPECT_FALSE(summary().contains("live")) << "nothing is corrected yet";
-  const Trajectory told = report.trajectory();
-  Trajectory corrected = told;
+  const Trajectory reported = report.trajectory();
+  Trajectory corrected = reported;
   for (std::size_t i = 20; i < corrected.size(); ++i) {
     corrected[i].T_world_camera.translation().z() += 0.2;
   }
@@ -245,7 +245,7 @@ TEST_F(RunReportTest, AFolderThatIsGoneIsAnErrorThatNamesTheFile) {
   EXPECT_NE(error.find("none/trajectory.txt: cannot be written"), std::string::npos) << error;
 }
 
-TEST(MakeFolder, SaysWhyItCannot) {
+TEST(MakeFolder, ReportsWhyItCannot) {
   TemporaryFolder folder;
   folder.write("file", "");
   EXPECT_NE(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that is saved and gone on in: mapper, loop closer and file together.
+// A map that is saved and continued: mapper, loop closer and file together.
 #include "posefusion/io/saved_map_file.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ struct Session {
     closer.serve(mapper);
     return status;
   }
-  /// Runs frames and tells how many poses are right (2 cm); a pose that is wrong fails.
+  /// Runs frames and returns how many poses are right (2 cm); a pose that is wrong fails.
   int follow(int begin, int end) {
     int right = 0;
     for (int i = begin; i < end; ++i) {
@@ -153,7 +153,7 @@ TEST_F(SavedMapFile, AMapKeepsWhereItStands) {
   const Eigen::Isometry3d T_world_map = Eigen::Translation3d(1, 2, 3) * bodyFromOptical();
   Session session;
   session.mapper.load(readSavedMap(copy()), MapUse::extend);
-  EXPECT_FALSE(session.mapper.placed()) << "made where nobody knew";
+  EXPECT_FALSE(session.mapper.placed()) << "made without a known place";
   session.mapper.place(T_world_map);
   Mapper again(config());
   again.load(session.mapper.saved(room().frame(0).frame.camera), MapUse::extend);

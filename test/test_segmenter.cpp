@@ -43,7 +43,7 @@ TEST(Segmenter, WorksFromHalfAMetreToFive) {
   }
 }
 
-TEST(Segmenter, NobodyCostsNothing) {
+TEST(Segmenter, NoPersonCostsNothing) {
   const Scene scene;
   SegmenterChain segmenter;
   const Segmentation result = segmenter.segment(scene.frame, {1, true, {}}, &scene.room);
@@ -61,7 +61,7 @@ TEST(Segmenter, DoesNotTouchItsInput) {
   EXPECT_GT(cv::countNonZero(result.static_depth == 0), cv::countNonZero(result.mask));
 }
 
-TEST(Segmenter, ThePapersEnergyKnowsDetectedJointsOnly) {
+TEST(Segmenter, ThePapersEnergyUsesDetectedJointsOnly) {
   SegmentationConfig config;
   config.energy = "paper";
   SegmenterChain segmenter(config);
@@ -144,7 +144,7 @@ TEST(Segmenter, TheDetectorsMaskShowsWhatTheJointsLeaveOut) {
 }
 
 /// A chair hides its sitter from the chest down: hips and the line to them lie on its back.
-TEST(Segmenter, TheBackOfAChairIsNobodys) {
+TEST(Segmenter, TheBackOfAChairIsNoPerson) {
   for (const bool with_mask : {false, true}) {
     Scene scene;
     cv::Mat chair = cv::Mat::zeros(480, 640, CV_8UC1);
@@ -170,8 +170,8 @@ TEST(Segmenter, WhatTheMapHoldsIsNoPersonWhateverAWeakDetectionShows) {
   EXPECT_TRUE(result.mask.empty() || iou(result.mask, scene.truth) < 0.05);
 }
 
-/// Part of a body at the border of the picture, say: one joint, a score that is low.
-TEST(Segmenter, AGuessIsSomebodyNewBeforeTheMapOnly) {
+/// As of part of a body at the border of the picture: one joint, a low score.
+TEST(Segmenter, AGuessIsANewPersonBeforeTheMapOnly) {
   Scene scene;
   scene.people.mask = maskOf(scene);
   Person& guess = scene.people.people[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corrections of the map move the camera in it: that is no motion of what is seen.
+// Corrections of the map move the camera in it, which is no motion of objects.
 #include <gtest/gtest.h>
 
 #include "segmenter_scene.hpp"
@@ -63,7 +63,7 @@ TEST(SegmenterCorrections, WhatStandsStillIsNotMaskedWhereTheMapIsCorrected) {
   }
 }
 
-TEST(SegmenterCorrections, WhatMovesKeepsItsVelocityAndIsToldInTheCorrectedMap) {
+TEST(SegmenterCorrections, WhatMovesKeepsItsVelocityAndIsReportedInTheCorrectedMap) {
   // 5 px a frame at 2 m: 0.571 m/s to the right.
   const double speed_m_s = 5 * kBox_m / kCamera.fx * 30;
   Watched room;

@@ -35,7 +35,7 @@ TEST(SharedBlocks, ACopyCopiesNoBlock) {
   }
 }
 
-TEST(SharedBlocks, WhoChangesABlockChangesItsOwn) {
+TEST(SharedBlocks, AChangedBlockIsACopyOfItsOwn) {
   SharedBlocks blocks = numbered(4);
   const SharedBlocks copy = blocks;
   const SurfelBlock* before = &blocks[2];

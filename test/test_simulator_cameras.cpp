@@ -53,7 +53,7 @@ TEST(SimulatorCameras, HandHeldCamerasMoveSmoothly) {
   }
 }
 
-TEST(SimulatorCameras, RobotsFallWhenTheyAreToldAndGetUpElsewhere) {
+TEST(SimulatorCameras, RobotsFallWhenTheScenarioHasItAndGetUpElsewhere) {
   Robot spec;
   spec.waypoints = {{1, 1}, {6, 1}, {6, 5}};
   spec.falls = {{9.0, "forward", 3.0, 0.8, 0.9}};
@@ -112,7 +112,7 @@ TEST(SimulatorCameras, RobotsFallDownStairsAndGetUpBelow) {
   EXPECT_LT(falling.acceleration_m_s2, 300.0);
 }
 
-TEST(SimulatorCameras, RobotsFaceElsewhereWhenTheyAreTold) {
+TEST(SimulatorCameras, RobotsFaceTheGivenDirection) {
   Robot spec;
   spec.waypoints = {{1, 1}, {Vector2d(5, 1), -M_PI_2}, {5, 3}};
   spec.repeats = false;

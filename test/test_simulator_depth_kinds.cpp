@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of flight and active stereo err as the papers on them say.
+// Time of flight and active stereo have the errors that the papers on them give.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -126,11 +126,11 @@ cv::Mat depthIn(const Built& built, const RayCaster& caster, const std::string& 
     const Eigen::Vector3d eye(room.origin_m.x() + 0.9, room.origin_m.y() + 3.9, 1.4);
     const Eigen::Isometry3d pose = lookAt(eye, eye + Eigen::Vector3d(1.0, -0.9, -0.2));
     const ViewSample sample{pose.linear().cast<float>(), pose.translation().cast<float>(), 0.0F};
-    const std::vector<Avatar> nobody;
+    const std::vector<Avatar> no_people;
     const std::vector<ThingShape> nothing;
     DepthView view;
     Renderer(built.world, caster)
-        .depth(built.scenario.camera, sample, {caster, nobody, nothing, 1U}, view);
+        .depth(built.scenario.camera, sample, {caster, no_people, nothing, 1U}, view);
     depth_m = view.depth_m.clone();
   }
   return depth_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the simulated inertial sensor says is what the camera does, with the errors of the settings.
+// The simulated inertial sensor measures the camera's motion, with the errors of the settings.
 #include <gtest/gtest.h>
 
 #include <cmath>

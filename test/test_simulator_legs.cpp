@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What simulated legs and necks say: the truth, but for the errors of the settings.
+// Simulated legs and necks measure the true motion, with the errors of the settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,11 +27,11 @@ LegsConfig exactConfig() {
 
 Isometry3d cameraOf(const LegSample& sample) { return sample.T_odom_base * sample.T_base_camera; }
 
-/// How far the motion told between two samples is from the true one (m plus rad).
+/// Error of the measured motion between two samples (m plus rad).
 double motionError(const CameraPath& path, const LegSample& a, const LegSample& b) {
-  const Isometry3d told = cameraOf(a).inverse() * cameraOf(b);
+  const Isometry3d sensed = cameraOf(a).inverse() * cameraOf(b);
   const Isometry3d truth = path.at(a.time_s).inverse() * path.at(b.time_s);
-  const Isometry3d error = told.inverse() * truth;
+  const Isometry3d error = sensed.inverse() * truth;
   return error.translation().norm() + angleOf(error);
 }
 
@@ -87,7 +87,7 @@ TEST(SimulatorLegs, TheBodyFacesWhereItWalksAndTheNeckDoesTheRest) {
   EXPECT_GT(aside, 50);
 }
 
-TEST(SimulatorLegs, TheNeckIsToldInStepsOfItsEncoders) {
+TEST(SimulatorLegs, TheNeckIsMeasuredInStepsOfItsEncoders) {
   LegsConfig config = exactConfig();
   config.encoder_counts = 1024;
   const double step_rad = 2.0 * M_PI / 1024;
@@ -103,7 +103,7 @@ TEST(SimulatorLegs, TheNeckIsToldInStepsOfItsEncoders) {
   }
 }
 
-TEST(SimulatorLegs, DriftGrowsAsTheSettingsSay) {
+TEST(SimulatorLegs, DriftGrowsByTheSettings) {
   LegsConfig config = exactConfig();
   config.drift_m_per_m = 0.02;
   config.drift_deg_per_turn = 3.0;
@@ -114,11 +114,11 @@ TEST(SimulatorLegs, DriftGrowsAsTheSettingsSay) {
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
     const auto samples = senseLegs(*path, config, kWalk, seed);
     const LegSample& last = samples.back();
-    const Isometry3d told = samples.front().T_odom_base.inverse() * last.T_odom_base;
+    const Isometry3d sensed = samples.front().T_odom_base.inverse() * last.T_odom_base;
     const auto exact = senseLegs(*path, exactConfig(), kWalk, seed);
     const Isometry3d truth = exact.front().T_odom_base.inverse() * exact.back().T_odom_base;
-    place += std::pow(told.translation().z() - truth.translation().z(), 2);
-    heading += std::pow(headingOf(told.linear()) - headingOf(truth.linear()), 2);
+    place += std::pow(sensed.translation().z() - truth.translation().z(), 2);
+    heading += std::pow(headingOf(sensed.linear()) - headingOf(truth.linear()), 2);
     expected = varianceOf(config, last.way_m, last.turned_rad);
     EXPECT_NEAR(last.way_m, 8.0, 1.0);
   }
@@ -163,7 +163,7 @@ TEST(SimulatorLegs, ASlipIsAStepThatIsNotThere) {
   EXPECT_LE(way_m, 7 * (0.09 + 3.2 * M_PI / 180.0));
 }
 
-TEST(SimulatorLegs, LegsTellAnythingInAFallAndTheTruthOutsideOfIt) {
+TEST(SimulatorLegs, LegsMeasureAnythingInAFallAndTheTruthOutsideOfIt) {
   LegsConfig config = exactConfig();
   config.falls_confuse = true;
   const auto path = fallingRobot();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// People and cameras move as bodies can.
+// People and cameras move as bodies do.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(SimulatorMotion, WalkersArriveAndTheirStandingFeetDoNotSlide) {
   EXPECT_LE(steps, 24);
 }
 
-TEST(SimulatorMotion, PeopleWhoMeetKeepApart) {
+TEST(SimulatorMotion, PeopleThatMeetKeepApart) {
   const World world = emptyRoom(8, 4);
   const Crowd crowd({walker({1, 2}, {7, 2}), walker({7, 2.02}, {1, 2.02})}, Walkway(world, 0.3),
                     farAway, 14.0);
@@ -97,7 +97,7 @@ TEST(SimulatorMotion, WaysLeadThroughDoorwaysNotThroughWalls) {
   }
 }
 
-TEST(SimulatorMotion, WhoSitsAtATableComesAndGoesBySideways) {
+TEST(SimulatorMotion, APersonAtATableComesAndGoesSideways) {
   World world = emptyRoom(6, 6);
   world.footprints.push_back({{3, 3}, {0.4, 1.0}, 0.0});    // a table
   world.footprints.push_back({{2.2, 3}, {0.3, 0.3}, 0.0});  // and its chair
@@ -157,7 +157,7 @@ TEST(SimulatorMotion, OnlyWhatCanBeReachedIsLeftFree) {
   EXPECT_LT(walkway.nearestFree({6, 2}).x(), 4.0);
 }
 
-TEST(SimulatorMotion, WhoIsPushedIntoAWallSlidesAlongIt) {
+TEST(SimulatorMotion, APersonPushedIntoAWallSlidesAlongIt) {
   const World world = emptyRoom(3, 1.2);
   const Walkway walkway(world, 0.3);
   const auto camera = [](double t) { return Vector2d(1.5, 1.2 - 0.1 * t); };

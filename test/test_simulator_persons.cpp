@@ -32,7 +32,7 @@ TEST(PersonSamples, SameSeedSameBytesWithAnyNumberOfThreads) {
   for (std::uint32_t room = 0; room < 2; ++room) EXPECT_EQ(bytesOf(3, room), together[room]);
 }
 
-TEST(PersonSamples, ProgramWritesTheRoomsAskedFor) {
+TEST(PersonSamples, ProgramWritesTheRequestedRooms) {
   const std::string command = std::string(POSEFUSION_TOOL_DIR) +
                               "/posefusion_person_data --seed 3 --first-room 1 --rooms 1";
   std::FILE* pipe = popen(command.c_str(), "r");
@@ -109,7 +109,7 @@ TEST(LoosePosture, KeepsBonesTogether) {
   }
 }
 
-TEST(LoosePosture, WhoLiesIsLow) {
+TEST(LoosePosture, ALyingPersonIsLow) {
   const Rig rig{Build()};
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     Dice dice(seed);

@@ -52,7 +52,7 @@ TEST(SimulatorRooms, SameSeedSameBytesOnOneThreadAndOnTwo) {
   }
 }
 
-TEST(SimulatorRooms, EventsTellTheRoomsAndWhenTheCameraWasInThem) {
+TEST(SimulatorRooms, EventsListTheRoomsAndWhenTheCameraWasInThem) {
   const TemporaryFolder folder;
   Simulation simulation(load(kTwoRooms));
   const auto output = openTumOutput(folder / "out", simulation);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Things that move: how they move, and scene files that ask for what cannot be.
+// Things that move: how they move, and scene files with impossible values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ TEST(SimulatorThings, EachMovesOverItsWholeWayWithoutAJump) {
   }
 }
 
-TEST(SimulatorThings, WhatIsToldOfTheirMovesIsOneChainFromTheFirstPlace) {
+TEST(SimulatorThings, TheMovesInTheEventsAreOneChainFromTheFirstPlace) {
   const Scenario scenario = thingsScenario();
   const Simulation simulation(scenario);
   const auto changes = simulation.thingChanges(simulation.frameCount());

@@ -125,7 +125,7 @@ TEST(SimulatorThingsMoved, OneThreadMakesTheSameBytesAsMany) {
   }
 }
 
-TEST(SimulatorThingsMoved, TheFolderTellsOfTheThings) {
+TEST(SimulatorThingsMoved, TheFolderDescribesTheThings) {
   const TemporaryFolder folder;
   ScenarioChanges changes;
   changes.duration_s = 3.0;

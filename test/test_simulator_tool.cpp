@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// posefusion_simulate as a user runs it: stopped, short of space, with bad outputs.
+// posefusion_simulate from the command line: stopped, short of space, with bad outputs.
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -57,7 +57,7 @@ class SimulatorToolTest : public testing::Test {
     const Program program("posefusion_simulate", {scene(), "--output", output}, log());
     for (int i = 0; i < 1200; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      // Progress is told every five seconds: frames are made by then.
+      // Progress is printed every five seconds: frames are made by then.
       if (program.said().find("frames per second") != std::string::npos) break;
     }
     program.send(signal);
@@ -141,7 +141,7 @@ TEST_F(SimulatorToolTest, WithoutImagesOnlyTheTruthAndTheOtherSensorsAreWritten)
   EXPECT_TRUE(hasSaid("out.bag: is a bag, --no-images expects a folder")) << said;
 }
 
-TEST_F(SimulatorToolTest, ABagSaysOfTheOtherSensorsWhatAFolderSays) {
+TEST_F(SimulatorToolTest, ABagHasTheOtherSensorsAsAFolderHas) {
   for (const char* output : {"out", "out.bag"}) {
     ASSERT_EQ(run({scene(), "--duration", "0.3", "--output", own / output}), 0) << said;
   }
@@ -166,8 +166,8 @@ TEST_F(SimulatorToolTest, ABagSaysOfTheOtherSensorsWhatAFolderSays) {
     EXPECT_EQ(posefusion_ros::toNs(tf->transforms[0].header.stamp), odometry[poses].stamp_ns);
     for (const auto& [part, pose] : {std::pair(0, odometry[poses]), std::pair(1, neck[poses])}) {
       const auto& t = tf->transforms[static_cast<std::size_t>(part)].transform.translation;
-      const Eigen::Vector3d told(t.x, t.y, t.z);
-      EXPECT_LT((told - pose.T_world_camera.translation()).norm(), 1e-7);
+      const Eigen::Vector3d published(t.x, t.y, t.z);
+      EXPECT_LT((published - pose.T_world_camera.translation()).norm(), 1e-7);
     }
     ++poses;
   }

@@ -112,7 +112,7 @@ TEST(SimulatorTruth, PosesOfTheTrajectoryAreThoseOfTheFrames) {
   EXPECT_LT(distance, 0.003);
 }
 
-TEST(SimulatorTruth, MotionCaptureHasTheNoiseAndTheGapsThatAreAskedFor) {
+TEST(SimulatorTruth, MotionCaptureHasTheNoiseAndTheGapsOfItsSettings) {
   const Simulation clean(smallScenario({"duration_s=8"}));
   const Simulation noisy(smallScenario(
       {"duration_s=8", "truth.noise_m=0.01", "truth.gap_every_s=2", "truth.gap_s=0.5"}));

@@ -10,8 +10,8 @@
 namespace pf {
 namespace {
 
-/// A wall that leans, with corners on it, seen by two cameras; some corners belong to somebody who
-/// walks.
+/// A wall that leans, with corners on it, seen by two cameras; some corners belong to a walking
+/// person.
 class SparseMotionTest : public ::testing::Test {
  protected:
   static constexpr double kWall_m = 2.5;
@@ -130,8 +130,8 @@ TEST_F(SparseMotionTest, CovarianceCoversTheError) {
   EXPECT_GE(covered, 18);
 }
 
-/// Somebody so near that the sensor has no depth of him, before most of the wall; `twenty` corners
-/// of the wall beside him.
+/// A person too near for the sensor's depth, before most of the wall; `twenty` corners of the wall
+/// beside.
 class NearPersonTest : public SparseMotionTest {
  protected:
   NearPersonTest() {
@@ -168,7 +168,7 @@ TEST_F(NearPersonTest, IsNotTakenForWhatIsFar) {
   EXPECT_LT(error(motion).norm(), 0.02);
 }
 
-TEST_F(NearPersonTest, NorWhereHeIsNotMaskedAndHisRimIsSeen) {
+TEST_F(NearPersonTest, NorWhereTheMaskMissesItAndItsRimIsSeen) {
   // Narrower than where corners lie.
   for (const int from : {kEdge_px - 8, 624}) before_m_.colRange(from, from + 16).setTo(0.5);
   for (const int from : {0, 464}) before_m_(cv::Rect(kEdge_px, from, 424, 16)).setTo(0.5);
@@ -213,7 +213,7 @@ class HoleTest : public SparseMotionTest, public testing::WithParamInterface<boo
 TEST_P(HoleTest, DoesNotHoldBackAShift) {
   const SparseMotion motion = estimate();
   ASSERT_TRUE(motion.found) << motion.inliers << " of " << motion.matches;
-  EXPECT_GT(motion.matches, 40) << "the hole's corners help to tell the turn";
+  EXPECT_GT(motion.matches, 40) << "the hole's corners help to measure the turn";
   EXPECT_LT(error(motion).head<3>().norm(), 0.03);
   EXPECT_LT(error(motion).tail<3>().norm(), 0.01);
 }

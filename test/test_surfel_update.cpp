@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What frames say about surfels: support, violation of free space, duplicates.
+// What frames do to surfels: support, violation of free space, duplicates.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -11,7 +11,7 @@ namespace pf {
 namespace {
 
 TEST(SurfelUpdate, WhatWentAwayIsRemovedOnceTheRoomBehindIsSeen) {
-  // Somebody stands before the wall, unmasked, long enough to become stable.
+  // A person stands before the wall, unmasked, long enough to become stable.
   SurfelMap map{MapConfig{}};
   Fuser fuser;
   for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0, 1.5), kIdentity, map);
@@ -25,7 +25,7 @@ TEST(SurfelUpdate, WhatWentAwayIsRemovedOnceTheRoomBehindIsSeen) {
   EXPECT_GT(countNear(map, 3.0), 17000U) << "and the wall is complete";
 }
 
-TEST(SurfelUpdate, WhatIsHiddenBehindSomebodyStays) {
+TEST(SurfelUpdate, WhatAPersonHidesStays) {
   SurfelMap map{MapConfig{}};
   Fuser fuser;
   for (int i = 0; i < 15; ++i) fuser.fuse(scene(3.0), kIdentity, map);
@@ -88,7 +88,7 @@ TEST(SurfelUpdate, BothSidesOfABoardAreMapped) {
   fuseOften(15, scene(1.5), map, {}, behind);
   EXPECT_EQ(map.size(), 2 * front) << "the far side has surfels of its own";
   map.forEachSurfel([](const SurfelArrays& s, std::size_t i) {
-    EXPECT_NEAR(s.odds[i], 15 * static_odds::kFrame, 1e-5) << "seen from behind tells nothing";
+    EXPECT_NEAR(s.odds[i], 15 * static_odds::kFrame, 1e-5) << "a view from behind is no evidence";
     EXPECT_EQ(s.nz[i] < 0, s.created[i] == 0);
   });
 }
@@ -102,7 +102,7 @@ TEST(SurfelUpdate, DepthBeyondTheRangeSeesThroughWhatIsNearer) {
   EXPECT_EQ(map.size(), 0U);
 }
 
-TEST(SurfelUpdate, PeopleWhoWereFusedGoWhereTheSegmenterFindsThem) {
+TEST(SurfelUpdate, FusedPeopleGoWhereTheSegmenterFindsThem) {
   // Nothing behind the person has depth; a chair at the same depth is beside the mask.
   const cv::Rect person(60, 40, 20, 40);
   SurfelMap map{MapConfig{}};
@@ -132,7 +132,7 @@ TEST(SurfelUpdate, PeopleWhoWereFusedGoWhereTheSegmenterFindsThem) {
   EXPECT_THROW(Fuser().fuse(masked, kIdentity, map, options), InputError);
 }
 
-/// Somebody at 1.5 m in the right half of the board's place.
+/// A person at 1.5 m in the right half of the board's place.
 const cv::Rect kFound(80, 40, 20, 40);
 
 FusionOptions foundAt(double depth_m) {
@@ -151,13 +151,13 @@ WorkingFrame withoutFound(WorkingFrame frame) {
 TEST(SurfelUpdate, WhatIsSeenCloseToPeopleStays) {
   SurfelMap map{MapConfig{}};
   fuseOften(40, withoutFound(scene(3.0, 1.5)), map, foundAt(1.5));
-  EXPECT_GT(stableNear(map, 1.5), 700U) << "the chair of somebody who sits";
+  EXPECT_GT(stableNear(map, 1.5), 700U) << "the chair of a sitting person";
   map.forEachSurfel(
       [](const SurfelArrays& s, std::size_t i) { ASSERT_EQ(s.odds[i], static_odds::kMost); });
 }
 
-TEST(SurfelUpdate, WhoWasMappedUnnoticedGoesOnceFound) {
-  // The board is somebody; behind it nothing has depth, so that nothing is seen through it.
+TEST(SurfelUpdate, APersonMappedUnnoticedGoesOnceFound) {
+  // The board is a person; behind it nothing has depth, so that nothing is seen through it.
   SurfelMap map{MapConfig{}};
   fuseOften(20, scene(0.0, 1.5), map);
   ASSERT_GT(stableNear(map, 1.5), 1000U);

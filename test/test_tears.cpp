@@ -86,7 +86,7 @@ TEST_F(TearsTest, ALoopTearsWhereBothPassesLieAndNowhereElse) {
   EXPECT_LT(found.size(), map_.blocks().size());
   for (const std::uint32_t block : found) {
     EXPECT_GT(now.blocks()[block].bounds.max().x(), 1.4F);
-    EXPECT_LT(now.blocks()[block].bounds.min().x(), 6.5F) << "what lies apart goes as it likes";
+    EXPECT_LT(now.blocks()[block].bounds.min().x(), 6.5F) << "what lies apart moves freely";
   }
   SurfelMap all = now;
   const std::size_t expected = removeYoungerLayers(all);

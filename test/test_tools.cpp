@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The programs as a user runs them: exit codes, messages, files.
+// The programs from the command line: exit codes, messages, files.
 #include <gtest/gtest.h>
 
 #include "posefusion/io/images.hpp"
@@ -59,7 +59,7 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(run({"surface", one, one}, "posefusion_evaluate"), 1) << "there is no truth";
 }
 
-TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
+TEST_F(ToolsTest, EvaluateReportsCoverageWrongPosesAndCovariance) {
   const std::string out = own / "out", status = own / "status.csv";
   ASSERT_EQ(run({sequence(), "--detector", "recorded", "--output", out, "--save-status", status}),
             0)
@@ -78,11 +78,11 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
   EXPECT_EQ(track.at("false_poses"), 0);
   EXPECT_EQ(track.at("live").at("false_poses"), 0);
 
-  // What was told at the time is read from the folder by itself.
-  const std::string told = out + "/latest/trajectory_live.txt";
-  Trajectory live = loadTrajectory(told);
+  // The live trajectory is read from the run's folder.
+  const std::string live_file = out + "/latest/trajectory_live.txt";
+  Trajectory live = loadTrajectory(live_file);
   live.back().T_world_camera.translation().x() += 0.5;
-  saveTrajectory(told, live, "");
+  saveTrajectory(live_file, live, "");
   ASSERT_EQ(run({sequence(), out, "--json"}, "posefusion_evaluate"), 0) << said;
   track = nlohmann::json::parse(said);
   EXPECT_EQ(track.at("false_poses"), 0);
@@ -92,7 +92,7 @@ TEST_F(ToolsTest, EvaluateTellsCoverageWrongPosesAndCovariance) {
   ASSERT_EQ(run({sequence(), out}, "posefusion_evaluate"), 0) << said;
   EXPECT_TRUE(hasSaid("final, loops corrected")) << said;
   EXPECT_TRUE(hasSaid("live, as told")) << said;
-  ASSERT_EQ(run({sequence(), told, "--json"}, "posefusion_evaluate"), 0) << said;
+  ASSERT_EQ(run({sequence(), live_file, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_FALSE(nlohmann::json::parse(said).contains("live")) << "a file is what it is";
 
   // Half of the poses taken away, and a jump in what is left.

@@ -137,7 +137,7 @@ TEST(PlaceErrors, AnEndThatIsOffIsAllOfTheErrorAndNoneOfItIsSharedOut) {
   EXPECT_EQ(placeErrors(truth, slidden(circle(), 180, {0, 0.09, 0})).false_count, 0U);
 }
 
-TEST(PlaceErrors, DriftAndKeptPlacesCountWhichNoMotionOverASecondTells) {
+TEST(PlaceErrors, CountDriftThatNoMotionOverASecondShows) {
   Trajectory drifted = circle();
   for (std::size_t i = 0; i < drifted.size(); ++i) {
     drifted[i].T_world_camera.pretranslate(Eigen::Vector3d(0.008 * static_cast<double>(i), 0, 0));
@@ -161,7 +161,7 @@ TEST(PlaceErrors, ATurnOnTheSpotCounts) {
 }
 
 TEST(PlaceErrors, AJumpAtTheTimeIsInTheLiveTrajectoryAlone) {
-  // For three seconds the camera was told 0.3 m off; a loop has corrected that since.
+  // For three seconds the reported poses were 0.3 m off; a loop has corrected that since.
   const Trajectory truth = circle();
   Trajectory live = truth;
   for (std::size_t i = 80; i < 110; ++i) {

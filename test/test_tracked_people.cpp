@@ -10,7 +10,7 @@
 namespace pf {
 namespace {
 
-/// Frame i of a figure who walks to the right by `step_px` a frame and is detected in the first.
+/// Frame i of a figure that walks to the right by `step_px` a frame and is detected in the first.
 Scene walkingScene(int i, int start_u, int step_px) {
   const int way = step_px * i;
   Scene scene(2.0F, start_u + way);
@@ -26,7 +26,7 @@ Scene walkingScene(int i, int start_u, int step_px) {
   return scene;
 }
 
-TEST(TrackedPeople, CarriesPeopleWhoWalkUnseen) {
+TEST(TrackedPeople, CarriesWalkingPeopleBetweenDetections) {
   SegmenterChain segmenter;
   for (int i = 0; i < 20; ++i) {
     const Scene scene = walkingScene(i, 250, 5);
@@ -38,7 +38,7 @@ TEST(TrackedPeople, CarriesPeopleWhoWalkUnseen) {
   }
 }
 
-TEST(TrackedPeople, WhoLeavesTheViewIsMaskedToTheLast) {
+TEST(TrackedPeople, APersonLeavingTheViewIsMaskedToTheLast) {
   SegmenterChain segmenter;
   for (int i = 0; i < 20; ++i) {
     Scene scene = walkingScene(i, 510, 7);
@@ -93,7 +93,7 @@ TEST(TrackedPeople, JointsFarOutsideTheImageAreForgotten) {
   }
 }
 
-TEST(TrackedPeople, ForgetsWhoIsGone) {
+TEST(TrackedPeople, ForgetsPeopleThatAreGone) {
   SegmenterChain segmenter;
   Scene scene;
   segmenter.segment(scene.frame, scene.people, &scene.room);
@@ -103,7 +103,7 @@ TEST(TrackedPeople, ForgetsWhoIsGone) {
   EXPECT_TRUE(result.mask.empty() || cv::countNonZero(result.mask) < 300);
 }
 
-TEST(TrackedPeople, SomebodyElseHasAnotherId) {
+TEST(TrackedPeople, AnotherPersonHasAnotherId) {
   SegmenterChain segmenter;
   Scene scene;
   segmenter.segment(scene.frame, scene.people, &scene.room);
@@ -129,7 +129,7 @@ TEST(TrackedPeople, ForgetsCarriedPeopleWhenTheImageSizeChanges) {
     const Segmentation result = segmenter.segment(other, {2, false, {}}, nullptr);
     EXPECT_TRUE(result.people.people.empty()) << size;
     EXPECT_TRUE(result.mask.empty()) << size;
-    // And people are found as ever in the size before.
+    // People are then found in the size before.
     scene.frame.stamp_ns = 3;
     EXPECT_GT(iou(segmenter.segment(scene.frame, scene.people, &scene.room).mask, scene.truth),
               0.93);
@@ -137,7 +137,7 @@ TEST(TrackedPeople, ForgetsCarriedPeopleWhenTheImageSizeChanges) {
 }
 
 TEST(TrackedPeople, WithoutAMapFurnitureIsNotMaskedForLong) {
-  // A person is known; then the camera is lost and looks at an armchair of the same colour.
+  // After a person was seen, the camera is lost and looks at an armchair of the same colour.
   SegmenterChain segmenter;
   Scene scene;
   segmenter.segment(scene.frame, scene.people, &scene.room);
@@ -156,7 +156,7 @@ TEST(TrackedPeople, WithoutAMapFurnitureIsNotMaskedForLong) {
   EXPECT_LE(masked_frames, 10);
 }
 
-TEST(TrackedPeople, WithoutAMapNobodyIsSeenWhereNobodyWas) {
+TEST(TrackedPeople, WithoutAMapNoPersonIsSeenWhereNoneWas) {
   SegmenterChain segmenter;
   Scene scene;
   scene.frame.depth.setTo(1.5F);  // as a table before the lens

@@ -127,7 +127,7 @@ TEST(TrajectoryJournal, AProcessThatIsKilledLosesNoPose) {
   }
 }
 
-TEST(TrajectoryJournal, SaysTheSameAsTheSavedTrajectoryAndThenGoes) {
+TEST(TrajectoryJournal, EqualsTheSavedTrajectoryAndIsThenRemoved) {
   const TemporaryFolder folder;
   Trajectory poses;
   TrajectoryJournal journal(folder / "journal", "camera");

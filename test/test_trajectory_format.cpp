@@ -31,7 +31,7 @@ const char kEuroc[] =
     "#timestamp, p_RS_R_x [m]\n"
     "1403636579758555392, 1, 2, 3, 0.70710678, 0, 0, 0.70710678, 0.1, 0.2\n";
 
-TEST_F(TrajectoryFormatTest, ToldByTheFirstLine) {
+TEST_F(TrajectoryFormatTest, IsRecognisedByTheFirstLine) {
   for (const char* text : {kTum, kKitti, kEuroc}) {
     const auto [poses, has_stamps] = read(text);
     ASSERT_EQ(poses.size(), 1U) << text;

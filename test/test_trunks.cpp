@@ -10,7 +10,7 @@
 namespace pf {
 namespace {
 
-/// Cells of the figure's chest that the map agrees with, before and after the trunks are doubted.
+/// Cells of the figure's chest that agree with the map, before and after the trunks are doubted.
 struct Doubted {
   SceneGrid grid;
   std::vector<Flatness> flatness;
@@ -33,7 +33,7 @@ struct Doubted {
 
 constexpr int kChestCells = 12 * 30;  // between hips and shoulders, in cells of 4 pixels, about
 
-TEST(Trunks, AMappedChestOfSomebodySureIsDoubted) {
+TEST(Trunks, AMappedChestOfACertainPersonIsDoubted) {
   Doubted scene;
   EXPECT_GT(scene.recent(), kChestCells);
   const int nose = scene.grid.cellAt(320, 145), chest = scene.grid.cellAt(320, 250);
@@ -65,9 +65,9 @@ TEST(Trunks, WhatStandsBeforeOrBehindTheJointsKeepsItsAgreement) {
   }
 }
 
-/// Somebody who stands still was mapped while hidden, all but the limbs: the hole in the mask would
+/// A person that stands still was mapped unmasked, all but the limbs: the hole in the mask would
 /// stay, and the camera follow the chest when it walks off.
-TEST(Trunks, AHoleInSomebodysMaskCloses) {
+TEST(Trunks, AHoleInAMaskCloses) {
   SegmenterChain segmenter;
   for (int i = 0; i < 4; ++i) {
     Scene scene;

@@ -132,7 +132,7 @@ TEST_F(TumFolderTest, DepthUnitAndDistortionComeFromTheCameraFile) {
   EXPECT_EQ(frame.camera.distortion, (std::array<double, 8>{0.1, 0, 0, -0.01}));
 }
 
-TEST_F(TumFolderTest, TheCameraFileSaysWhatTakesTheDepth) {
+TEST_F(TumFolderTest, TheCameraFileNamesTheKindOfSensor) {
   const std::string camera =
       "width: 64\nheight: 48\nfx: 60\nfy: 61\ncx: 31.5\ncy: 23.5\ndepth_factor: 5000\n";
   const auto sourceOf = [&](const std::string& more) {
@@ -224,7 +224,7 @@ TEST_F(TumFolderTest, AWordThatIsNoStampIsNamedWithFileAndLine) {
             std::string::npos);
 }
 
-TEST_F(TumFolderTest, ErrorsSayWhatIsMissing) {
+TEST_F(TumFolderTest, ErrorsNameWhatIsMissing) {
   const auto error = [&](const std::string& path) { return errorOf([&] { openTumFolder(path); }); };
   const auto has = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

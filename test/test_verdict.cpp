@@ -38,14 +38,14 @@ class JudgeTest : public testing::Test {
   PosePrior prior_;
 };
 
-TEST_F(JudgeTest, WhatThePredictionAllowsIsBelieved) {
+TEST_F(JudgeTest, WhatThePredictionAllowsIsAccepted) {
   EXPECT_EQ(judged(0.01), FrameOutcome::fused);
   EXPECT_EQ(judged(0.1), FrameOutcome::fused);
   EXPECT_EQ(judged(0.5), FrameOutcome::disagrees);
 }
 
-TEST_F(JudgeTest, AnAlignmentThatTellsLittleCannotLeaveItsPredictionFar) {
-  // Images that know half of what the prediction does draw it by a part of its own error.
+TEST_F(JudgeTest, AWeakAlignmentCannotLeaveItsPredictionFar) {
+  // Images with half of the prediction's information move it by a part of its own error.
   EXPECT_EQ(judged(0.25), FrameOutcome::fused);
   result_.covariance = (1.0 / 1.5) * prior_.covariance;
   EXPECT_EQ(judged(0.25), FrameOutcome::disagrees);
@@ -64,7 +64,7 @@ TEST_F(JudgeTest, APredictionThatLostItsWeightMayBeLeftFarther) {
 
 TEST_F(JudgeTest, WithoutCornersTheImagesHaveToProveAStep) {
   show(0.25);
-  EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners say the same";
+  EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners agree";
   prior_.is_measured = false;
   EXPECT_EQ(judged(0.1), FrameOutcome::jumped) << "little of the view is in the map";
   EXPECT_EQ(judged(0.01), FrameOutcome::fused) << "as it was going to";
@@ -80,7 +80,7 @@ TEST_F(JudgeTest, WithoutCornersNoDirectionMayBeFree) {
 }
 
 TEST_F(JudgeTest, AtTheRimOfTheMapNoDirectionMayBeFree) {
-  // In a fall the last of the map leaves the view, and too few corners tell of so fast a motion.
+  // In a fall the last of the map leaves the view, and too few corners measure so fast a motion.
   show(0.25);
   EXPECT_EQ(judged(0.01), FrameOutcome::fused);
   result_.free_directions = 1;
@@ -92,7 +92,7 @@ TEST_F(JudgeTest, WhatIsSeenThroughIsNotThere) {
   EXPECT_EQ(judged(0.0), FrameOutcome::seen_through);
 }
 
-TEST_F(JudgeTest, TooLittleOfTheMapSaysNothing) {
+TEST_F(JudgeTest, TooLittleOfTheMapDecidesNothing) {
   show(0.01);
   EXPECT_EQ(judged(0.0), FrameOutcome::few_inliers);
   show(0.9);

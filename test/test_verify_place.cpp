@@ -20,7 +20,7 @@ TEST(VerifyPlace, TheTruePlaceIsMadeExactAndAccepted) {
   EXPECT_LT(radiansOff(verdict.alignment.T_map_camera, truth), 0.02);
 }
 
-TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
+TEST(VerifyPlace, APositionThatIsHardlyKnownIsRejected) {
   PlaceVerdict verdict;
   verdict.alignment.converged = true;
   verdict.agreement = {1.0, 1.0, 0.0, 0.0, 1.0, 0.2};
@@ -32,7 +32,7 @@ TEST(VerifyPlace, APositionThatIsHardlyKnownIsNotBelieved) {
   }
 }
 
-TEST(VerifyPlace, ABentMapIsBelievedWhereShapeAndPictureSayTheSame) {
+TEST(VerifyPlace, ABentMapIsAcceptedWhereShapeAndPictureAgree) {
   PlaceVerdict verdict;
   verdict.alignment.converged = true;
   PlaceAgreement& agreement = verdict.agreement;
@@ -50,7 +50,7 @@ TEST(VerifyPlace, ABentMapIsBelievedWhereShapeAndPictureSayTheSame) {
   EXPECT_EQ(judged(0.15, 0.8), PlaceDoubt::disagrees);
 }
 
-TEST(VerifyPlace, ATruePlaceIsNotBelievedThroughAGap) {
+TEST(VerifyPlace, ATruePlaceIsRejectedThroughAGap) {
   TrueFrame truth = room().sequence.frame(8);
   PlaceVerifier verifier{TrackingConfig{}};
   for (const double open : {0.8, 0.12}) {
@@ -97,7 +97,7 @@ TEST(VerifyPlace, SeesWhenTheMapsSurfacesAreGone) {
 }
 
 /// Two rooms that are the same.
-TEST(VerifyPlace, OfAlikePlacesTheOneThatIsExpectedIsBelieved) {
+TEST(VerifyPlace, OfAlikePlacesTheOneThatIsExpectedIsAccepted) {
   Eigen::Isometry3d T_other_room = Eigen::Isometry3d::Identity();
   T_other_room.translation().x() = 12;
   SurfelMap both(MappedRoom::stableAtOnce());
@@ -123,7 +123,7 @@ TEST(VerifyPlace, OfAlikePlacesTheOneThatIsExpectedIsBelieved) {
     const ExpectedPlace expected(graph, reckoned);
     const PlaceVerdict verdict =
         verifier.verifyBest(both, room().frame(8), candidates, 6, &expected);
-    EXPECT_EQ(verdict.accepted(), sigma_m < 1) << "reckoning that hardly knows tells nothing apart";
+    EXPECT_EQ(verdict.accepted(), sigma_m < 1) << "an uncertain prior decides nothing";
     EXPECT_LT(metresOff(verdict.alignment.T_map_camera, candidates[1].pose.T_map_camera), 0.05);
   }
 }

@@ -28,7 +28,7 @@ std::vector<ViewSurface> ring() {
   return surfaces;
 }
 
-/// Neighbours, where they are; the last pair closes the round, or it stays open.
+/// Pairs of neighbours at their true poses; the last pair closes the circle where `is_closed`.
 std::vector<ViewPair> neighbours(const std::vector<ViewSurface>& views, bool is_closed) {
   std::vector<ViewPair> pairs;
   const auto add = [&](std::size_t from, std::size_t to) {
@@ -52,7 +52,7 @@ struct Measured {
   explicit Measured(std::vector<ViewPair> pairs) : truth(std::move(pairs)) {
     turns = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(truth.size()));
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      // The closing pair goes the other way round.
+      // The closing pair goes the other way.
       const double sign = truth[k].to == truth[k].from + 1 ? 1.0 : -1.0;
       turns(4, static_cast<Eigen::Index>(k)) = sign;
     }
@@ -87,7 +87,7 @@ struct Measured {
   }
 };
 
-/// What is found of d, of which only its size is known.
+/// The estimate of d from a prior on its size alone.
 double found(const Measured& measured, std::vector<ViewPair> pairs, ViewPoses& views) {
   constexpr double kPrior = 1.0 / (0.01 * 0.01);
   double d = 0;
@@ -104,7 +104,7 @@ double found(const Measured& measured, std::vector<ViewPair> pairs, ViewPoses& v
   return d;
 }
 
-TEST(ViewPoses, aRoundThatClosesTellsWhatNoPairTells) {
+TEST(ViewPoses, aCircleThatClosesShowsWhatNoPairShows) {
   const std::vector<ViewSurface> views = ring();
   Measured open(neighbours(views, false)), closed(neighbours(views, true));
   open.d = closed.d = 0.01;
