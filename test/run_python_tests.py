@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 
 
 class Report(unittest.TextTestResult):
-    """Keeps what became of each case."""
+    """Keeps the result of each case."""
 
     def __init__(self, *arguments, **named):
         super().__init__(*arguments, **named)

@@ -38,7 +38,7 @@ class Baseline(unittest.TestCase):
                 self.assertEqual(found[method, "seq"], found[method, "seq.bag"])
             self.assertEqual(len(set(found.values())), 3, "each method is another")
 
-    def test_what_is_wrong_is_said(self):
+    def test_errors_are_reported(self):
         self.assertEqual(run(BASELINE, "nowhere")[0], 1)
         code, _, wrong = run(BASELINE, "nowhere", "--method", "dvo")
         self.assertEqual(code, 105)

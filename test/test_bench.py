@@ -34,7 +34,7 @@ class Bench(unittest.TestCase):
             self.assertNotIn("old", text)
             self.assertNotIn("one", text)
 
-    def test_what_was_told_at_the_time_stands_beside_what_loops_made_of_it(self):
+    def test_live_figures_stand_beside_final_ones(self):
         from bench_runs import Runs
 
         class Options:
@@ -126,9 +126,9 @@ class Bench(unittest.TestCase):
             turn = "0 0 0.70710678 0.70710678"
             (sequence / "groundtruth.txt").write_text(
                 "".join(f"{t}.0 {x} 1 1.4 {turn}\n" for t, x in ((1, 1), (2, 2), (3, 2), (4, 6), (5, 12.5))))
-            (sequence / "told.txt").write_text(
+            (sequence / "estimate.txt").write_text(
                 "".join(f"{t}.0 7 {y} 0 0 0 0 1\n" for t, y in ((1, 0), (2, -1), (3, -11), (4, -11), (5, -2))))
-            self.assertEqual(mixed_up(sequence, sequence / "told.txt"), 2, "those of 3 and 5 s")
+            self.assertEqual(mixed_up(sequence, sequence / "estimate.txt"), 2, "those of 3 and 5 s")
 
     def test_unknown_parts_are_refused(self):
         done = subprocess.run([str(ROOT / "scripts" / "bench"), "--only", "walk,wlak"],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""scripts/campaign on small simulated recordings: killed and gone on with, it gives what runs one after the other give."""
+"""scripts/campaign on small simulated recordings: killed and continued, it gives the results of single runs."""
 import os
 import pathlib
 import shutil
@@ -51,7 +51,7 @@ class Campaign(unittest.TestCase):
         return sorted((self.root / output).glob("figures/*/*.json"))
 
     def kill_when(self, output, condition):
-        """With all that it started, as by a power cut."""
+        """Kills it and all its children, as a power cut would."""
         with open(self.root / "killed.log", "a", encoding="utf-8") as log:
             process = subprocess.Popen(self.command(output), stdout=log, stderr=log, start_new_session=True)
         end = time.monotonic() + PATIENCE_S
@@ -69,7 +69,7 @@ class Campaign(unittest.TestCase):
             if any(folder.iterdir()):
                 self.assertTrue((folder / "groundtruth.txt").is_file(), folder)
 
-    def test_killed_twice_it_gives_what_runs_one_after_the_other_give(self):
+    def test_killed_twice_it_gives_the_results_of_single_runs(self):
         self.kill_when("killed", lambda: any((self.root / "killed").glob("recordings/.*.part/*")))
         self.check_whole("killed")
         self.kill_when("killed", lambda: len(self.figures("killed")) >= 1)
@@ -98,7 +98,7 @@ class Campaign(unittest.TestCase):
                 self.assertEqual((self.root / "killed/runs" / name / setting / file).read_bytes(),
                                  (by_hand / "latest" / file).read_bytes(), f"{name} {setting} {file}")
 
-    def test_what_fails_stands_in_the_table_and_is_tried_again(self):
+    def test_failures_stand_in_the_table_and_are_tried_again(self):
         broken = self.root / "broken"
         broken.mkdir()
         self.file.write_text(plan_text("- broken\n").replace("seeds: [1, 2]", "seeds: [1]"))

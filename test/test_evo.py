@@ -166,7 +166,7 @@ class Evo(unittest.TestCase):
             self.estimate.write_text(text(estimate))
             self.compare(truth, estimate, "rigid")
 
-    def test_a_clock_that_is_off_is_put_right(self):
+    def test_a_clock_offset_is_corrected(self):
         truth, estimate = simulated(5)
         self.truth.write_text(tum(truth))
         self.estimate.write_text("".join(f"{float(line.split(' ', 1)[0]) - 12.5:.6f} {line.split(' ', 1)[1]}"

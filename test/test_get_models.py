@@ -107,7 +107,7 @@ class Script(unittest.TestCase):
         for words in ("Apache-2.0", "non-commercial", "pose_iter_440000", "pose_iter_584000"):
             self.assertIn(words, listed.stdout)
 
-    def test_says_nothing_when_nobody_reads(self):
+    def test_a_closed_pipe_is_no_error(self):
         for arguments in ((), ("--help",)):
             reader, writer = os.pipe()
             os.close(reader)
@@ -139,7 +139,7 @@ class Script(unittest.TestCase):
         self.assertTrue((target / "tf_pose_mobilenet_v2_small.opencv.yaml").is_file())
         self.assertEqual(list(target.glob("*.part")), [])
 
-    def test_no_network_says_what_to_do(self):
+    def test_without_network_the_error_names_a_remedy(self):
         nowhere = "http://127.0.0.1:9"
         done = self.run_script("tf_pose_mobilenet_v2_small", "--output", self.path / "models",
                                https_proxy=nowhere, http_proxy=nowhere, no_proxy="")

@@ -95,7 +95,7 @@ class Mapping(unittest.TestCase):
         self.assertTrue((found.radii > 0).all())
         self.assertIs(found.points, found.points, "no copy each time")
 
-    def test_answers_tell_what_is_known(self):
+    def test_answers_have_pose_and_covariance(self):
         answers = self.mapped()[1]
         self.assertEqual(answers[-1].status, "tracking")
         self.assertEqual(answers[-1].stamp, self.frames[-1][2])
@@ -112,7 +112,7 @@ class Mapping(unittest.TestCase):
         self.assertNotEqual(lost.reason, "")
         self.assertEqual((lost.stamp, len(slam.trajectory()), len(slam.map())), (1000000000, 0, 0))
 
-    def test_what_is_wrong_is_said(self):
+    def test_errors_are_reported(self):
         slam = posefusion.Slam(SMALL)
         color, depth, stamp, camera = self.frames[0]
         for arguments, said in (((None, depth), "color is NoneType, expected a numpy array"),

@@ -158,9 +158,9 @@ class Report(unittest.TestCase):
         stamp = file.stat().st_mtime_ns
         file.write_text(file.read_text().replace('"mode": "pfh"', '"mode": "other"'))
         self.report("two", "box_walker_1")
-        self.assertNotEqual(file.stat().st_mtime_ns, stamp, "what was measured otherwise is measured anew")
+        self.assertNotEqual(file.stat().st_mtime_ns, stamp, "with other settings it is measured again")
 
-    def test_what_cannot_be_asked_is_refused(self):
+    def test_impossible_arguments_are_refused(self):
         for words, said in ((("--modes", "fast"), "'fast' is none of elastic, posefusion, pfh"),
                             (("--runs", "0"), "--runs is 0"), (("--others", "nowhere"), "is no folder")):
             done = subprocess.run([str(ROOT / "scripts" / "report"), *words], stderr=subprocess.PIPE, text=True)

@@ -43,7 +43,7 @@ class Parts(unittest.TestCase):
                                           ("hrpslam1_1_setfps15", True, "hrpslam1"), ("my_room", False, "my_room")):
             self.assertEqual(literature_name(name, simulated), expected)
 
-    def test_cells_tell_of_all_runs(self):
+    def test_cells_cover_all_runs(self):
         from report_tables import error_cell
         cell = error_cell(self.results(0.3, 0.1, 0.2), "ate_m", 2, "own")
         self.assertEqual((cell.text, cell.value, cell.live, cell.least, cell.most, cell.runs),
@@ -160,7 +160,7 @@ class Download(unittest.TestCase):
             self.assertIn(words, said)
         self.assertFalse((self.root / "c.txt").exists())
 
-    def test_a_checksum_that_nobody_tells_is_remembered(self):
+    def test_an_unknown_checksum_is_remembered(self):
         entry = {**self.put("a.tgz", "a"), "sha256": None}
         self.assertEqual(self.download(entry)[0], 0)
         known = json.loads((self.root / "data" / "checksums.json").read_text())

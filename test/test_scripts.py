@@ -16,7 +16,7 @@ LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentatio
           "mesh", "grid",
           "loop", "slam", "io", "evaluation", "run", "python", "simulator", "ros", "openni2",
           "nodelets", "tools", "viewer")
-FORMATTER = "version 14."  # of clang-format: others lay out some lines differently
+FORMATTER = "version 14."  # of clang-format: other versions format some lines differently
 
 
 def files(*folders):
@@ -85,7 +85,7 @@ class Scripts(unittest.TestCase):
         self.assertEqual(len(packages), len(set(packages)))
         documented = (ROOT / "docs" / "dependencies.md").read_text()
         for package in packages:
-            self.assertIn(f"`{package}`", documented, "docs/dependencies.md says why it is needed")
+            self.assertIn(f"`{package}`", documented, "docs/dependencies.md must state its purpose")
 
     def test_setup_asks_rosdep_on_ubuntu(self):
         if shutil.which("rosdep", path="/usr/bin"):
@@ -111,7 +111,7 @@ class Scripts(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("'sarge': expected bullseye, bookworm or trixie", done.stderr)
 
-    def test_summary_counts_and_tells_failure(self):
+    def test_summary_counts_and_reports_failure(self):
         with tempfile.TemporaryDirectory() as folder:
             results = pathlib.Path(folder)
             (results / "gtest-a.xml").write_text(
@@ -221,7 +221,7 @@ class Repository(unittest.TestCase):
                     self.assertLessEqual(len(line), 160, f"{path.name}:{number}")
 
     def test_every_setting_is_used(self):
-        """A setting that only its own list knows would be believed to do something."""
+        """A setting that is only listed would have no effect."""
         code = "".join(path.read_text() for path in files("include", "src")
                        if path.suffix in (".hpp", ".cpp") and path.name != "config.hpp")
         settings = known_settings()

@@ -15,8 +15,8 @@ from test_replay import SANITIZE, free_port, program
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DOCUMENTS = ("README.md", "docs/ros-api.md")
 PATIENCE_S = 60
-STEADY_S = 8  # what is still there then has begun well
-# Nothing is shown, no network is loaded, nobody waits for a device.
+STEADY_S = 8  # a program that still runs after this has started well
+# Without windows, without a network's weights, and without waiting for a device.
 UNATTENDED = {"slam.launch": ["rviz:=false", "detector:=none"], "replay.launch": ["detector:=none"],
               "openni2.launch": []}
 
@@ -135,7 +135,7 @@ class Commands(unittest.TestCase):
         for name in services:
             self.assertIsNotNone(roslib.message.get_service_class(name), name)
 
-    def test_launch_files_start_as_the_documents_say(self):
+    def test_launch_files_start_as_documented(self):
         launches = sorted({c for d, c in commands() if c.startswith("roslaunch")})
         self.assertGreater(len(launches), 6)
         if SANITIZE == "true":  # the camera runs in the stock manager, which is built without

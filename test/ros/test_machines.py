@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""robot.launch and workstation.launch as a user starts them, on a bag."""
+"""robot.launch and workstation.launch on a bag."""
 import json
 import os
 import pathlib
@@ -13,8 +13,8 @@ import unittest
 from test_replay import SANITIZE, free_port, poses, program
 
 SECONDS = 2
-FRAMES = 15 * SECONDS  # half of what the camera takes
-# Small pictures, played slowly: what matters here is not how fast the machine is.
+FRAMES = 15 * SECONDS  # half of the camera's frames
+# Small pictures, played slowly: the test must not depend on the speed of the machine.
 SMALL = ("--set", "camera.width=160", "--set", "camera.height=120", "--set", "depth.disparity_steps=32", "--set",
          "depth.lateral=0.25", "--set", "color.samples=1")
 SPEED = "0.2"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""replay.launch as a user starts it, against the offline runner."""
+"""replay.launch against the offline runner."""
 import json
 import os
 import pathlib
@@ -124,7 +124,7 @@ class Replay(unittest.TestCase):
         self.assertIn("the calibration of depth is of a camera of another view", text)
 
     def check_summaries(self, text):
-        """What the replay tells beside the offline run is the same, as far as it is told."""
+        """The summary of the replay equals that of the offline run in the keys that both have."""
         replayed, offline = (json.loads(pathlib.Path(self.folder, run, "summary.json").read_text())
                              for run in ("ros_run/latest", "offline/latest"))
         for key in ("version", "frames", "masks", "surfels", "configuration"):
@@ -193,7 +193,7 @@ class Replay(unittest.TestCase):
             self.assertFalse(os.path.exists(self.folder + "/nothing"), arguments)
 
     def test_the_end_of_the_chain_ends_the_replay(self):
-        """Without the look at the arguments: roslaunch gives 0 whatever becomes of its nodes."""
+        """Without the check of the arguments; roslaunch itself returns 0 even if its nodes fail."""
         text = self.replay("bag:=sequence.bag", "detector:=none", "output:=failed",
                            "check:=false", "mode:=fast")
         self.assertIn("cannot start", text)
