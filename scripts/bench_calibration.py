@@ -33,7 +33,7 @@ class Calibration(Runs):
                              {"ate": 0.022, "live": 0.030, "false": 0, "median": 12, "p95": 35, "layers": 0.3})
 
     def cameras(self):
-        """Other cameras than the one the estimator was made for: what it must not spoil."""
+        """Cameras unlike the one that the estimator was made for: it must not make them worse."""
         seed = self.options.seeds[0]
         for camera, (settings, bar) in CAMERAS.items():
             arguments = [word for setting in settings for word in ("--set", setting)]
@@ -52,13 +52,13 @@ class Calibration(Runs):
         said = call(PROGRAMS / "posefusion_calibrate", run / "map.pfdb", "--output", file, "--truth", sequence)
         truth = next((line for line in said.splitlines() if "correlation" in line), None)
         if truth is None:
-            raise Failed(f"posefusion_calibrate told nothing of the truth: {said}")
+            raise Failed(f"posefusion_calibrate printed no comparison with the truth: {said}")
         words = truth.replace(";", "").split()
         self.row(f"{name}: field against the truth, correlation", float(words[1]), "", 0.93, most=False, digits=3)
         self.row(f"{name}: what is left at 4 m, RMS", float(words[words.index("4") - 3]), "mm", 10, digits=1)
 
     def camera_rows(self, name, sequence, run, bars):
-        """Errors at the end and at the time, and of the surface; `bars` by name, where there are any."""
+        """Final and live errors of the trajectory, and those of the surface; `bars` by name, where there are any."""
         final = self.evaluate(sequence, run)
         live = final["live"]
         self.row(f"{name}: ATE, final", final["ate_m"]["rmse"], "m", bars.get("ate"), digits=4)

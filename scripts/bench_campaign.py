@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The part `campaign` of scripts/bench: 60 small simulated recordings by scripts/campaign, killed twice and gone on with,
+"""The part `campaign` of scripts/bench: 60 small simulated recordings by scripts/campaign, killed twice and continued,
 against runs one after the other."""
 import os
 import resource

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Simulated falls in a room that was mapped before: how soon is the robot found again?"""
+"""Simulated falls in a room mapped before: how soon is the robot relocalised?"""
 import json
 import math
 import random
@@ -8,7 +8,7 @@ import statistics
 from bench_report import call
 from bench_runs import PROGRAMS, Runs
 
-# The way of loop_room but for its last legs.
+# The path of loop_room without its last legs.
 LEGS = ((2.0, 1.7), (4.4, 1.5), (6.5, 1.9), (7.0, 3.4), (6.2, 5.2), (4.4, 5.1), (2.5, 4.6), (2.0, 3.0))
 ROOM_SEED = 2
 COUNT = 20
@@ -74,11 +74,11 @@ class Falls(Runs):
         self.fall_rows(f"{len(falls)} falls in the map of loop_room {ROOM_SEED}", falls)
 
     def fall_rows(self, name, falls):
-        """What posefusion_fall_check told of some falls, with the bars."""
+        """The figures of posefusion_fall_check for some falls, with the bars."""
         found = [fall for fall in falls if fall["tracking_after_s"] is not None]
         self.row(f"{name}: found", len(found), f"of {len(falls)}", len(falls), most=False, digits=0)
         self.row(f"{name}: held on to throughout", sum(not fall["lost"] for fall in falls), "", digits=0)
-        # Who is not found although 80 % of his view are in the map has taken longer than any bar.
+        # A robot that is not found although 80 % of its view are in the map exceeds any bar.
         seen = [fall for fall in falls if not fall["lost"] or fall["map_in_view_after_s"] is not None]
         times = [math.inf if fall["time_to_tracking_s"] is None else fall["time_to_tracking_s"]
                  for fall in seen]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A floor of eight rooms, two of them alike: are they taken for each other?"""
+"""A floor of eight rooms, two of them alike: are they confused?"""
 import bisect
 import json
 import math
@@ -45,15 +45,15 @@ class Truth:
 
 
 def mixed_up(sequence, trajectory):
-    """How many poses are off by as much as two rooms alike are apart: the camera sees into one, perhaps through
-    its doorway, and is told to be at the other. Poses are placed in the world by the first of them."""
+    """How many poses are off by as much as two rooms alike are apart: the camera sees into one, perhaps through its
+    doorway, and is reported in the other. Poses are placed in the world by the first of them."""
     truth = Truth(sequence)
     ways = list(truth.ways_between_alike())
-    told = sorted((float(stamp), pose) for stamp, pose in poses(trajectory).items())
-    (at, turn), (true_at, true_turn) = told[0][1], truth.pose(told[0][0])
+    reported = sorted((float(stamp), pose) for stamp, pose in poses(trajectory).items())
+    (at, turn), (true_at, true_turn) = reported[0][1], truth.pose(reported[0][0])
     q_world_map = product(true_turn, inverse(turn))
     count = 0
-    for stamp, (place, _) in told:
+    for stamp, (place, _) in reported:
         moved = turned(q_world_map, [p - a for p, a in zip(place, at)])
         error = [t + m - now for t, m, now in zip(true_at, moved, truth.pose(stamp)[0])]
         count += any(math.dist(error[:2], way) < MIXED_UP_M for way in ways)

@@ -80,7 +80,7 @@ class Hours(Runs):
     def hours_rows(self, frames, summary, seen):
         first = [row for row in seen if row[0] >= frames / HOURS]
         if len(first) < 2:
-            raise Failed("too short to tell of growth")
+            raise Failed("too short to measure growth")
         self.row(f"{frames} frames in one room, memory after the first of {HOURS} parts", first[0][1], "MB", digits=0)
         self.row("the same, memory in the end against that", seen[-1][1] / first[0][1], "x", 1.1, digits=2)
         self.row("the same, the map's file in the end against that", seen[-1][2] / first[0][2], "x", 1.1, digits=2)

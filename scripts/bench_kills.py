@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The part `kills` of scripts/bench: kill -9 at random moments of a run, from its start to the renaming of its
-folder, while a map is made, gone on in, or written on in place. Which files load, and what of them is lost?"""
+"""The part `kills` of scripts/bench: kill -9 at random moments of a run, from its start to the renaming of its folder,
+while a map is made, continued, or written on in place. Which files load, and what do they lack?"""
 import random
 import shutil
 import subprocess
@@ -28,10 +28,10 @@ def frames_in(map_file):
 
 
 class Kill:
-    """One run that is killed, and what is found then."""
+    """One run that is killed, and the files that it leaves."""
     def __init__(self, sequence, output, arguments, map_file, loaded):
         self.output, self.map_file, self.loaded = output, map_file, loaded
-        self.told = {}  # when each pose was told first
+        self.reported = {}  # when each pose was first reported
         shutil.rmtree(output, ignore_errors=True)
         self.run = subprocess.Popen([str(PROGRAMS / "posefusion_run"), str(sequence), "--output", str(output),
                                      "--detector", "recorded", *map(str, arguments)],
@@ -51,7 +51,7 @@ class Kill:
         journal = folder and folder / JOURNAL
         try:
             for stamp in poses(journal) if journal and journal.exists() else ():
-                self.told.setdefault(stamp, time.monotonic())
+                self.reported.setdefault(stamp, time.monotonic())
         except OSError:
             pass  # renamed meanwhile
 
@@ -63,10 +63,10 @@ class Kill:
             return "ended"
         if folder.suffix != ".partial" or (folder / "trajectory.txt").exists():
             return "end"
-        return "mapping" if self.told else "start"
+        return "mapping" if self.reported else "start"
 
     def map_found(self):
-        """The map file that there is to go on in; None where there is none yet."""
+        """The map file that the run left; None where there is none yet."""
         if self.map_file:
             return self.map_file
         folder = run_folder(self.output)
@@ -74,13 +74,13 @@ class Kill:
         return found[0] if found else None
 
     def lost_s(self):
-        """How long before the last pose that was told that was which is the last one in the map. Throws
-        Failed where the map does not load."""
-        if not self.told:
+        """Seconds between the last pose in the map and the last one reported. Throws Failed where the map does not
+        load."""
+        if not self.reported:
             if self.map_file:
                 call(PROGRAMS / "posefusion_map", "check", self.map_file)
             return 0.0
-        last, first = max(self.told.values()), min(self.told.values())
+        last, first = max(self.reported.values()), min(self.reported.values())
         found = self.map_found()
         if found is None:
             return last - first
@@ -90,9 +90,9 @@ class Kill:
             if NO_MAP_YET in str(error):
                 return last - first
             raise
-        # Poses are told and written in the same order; those of a map that is gone on in come before.
+        # Poses are reported and written in the same order, after those of a map that is continued.
         saved = frames_in(found) - self.loaded
-        times = sorted(self.told.values())
+        times = sorted(self.reported.values())
         return last - first if saved <= 0 else last - times[min(saved, len(times)) - 1]
 
 
@@ -120,7 +120,7 @@ class Kills(Runs):
                     frames_in(copy) if arguments else 0)
 
     def whole_run(self, sequence, source, mode):
-        """Seconds that a run takes which is not killed."""
+        """Seconds that a run takes without being killed."""
         begin = time.monotonic()
         run = self.begin(sequence, source, mode)
         if run.run.wait() != 0:

@@ -15,7 +15,7 @@ from bench_report import Failed, call
 
 SUBNET = "10.213.47"
 MTU = 1500
-NOBODY = "02:00:00:00:00:99"
+NO_HOST = "02:00:00:00:00:99"
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
 PACKETS = 1000  # that wait in each direction, as netem has it
 
@@ -73,7 +73,7 @@ class Namespaces:
             subprocess.run(["ip", "netns", "delete", name], check=False)
 
     def inside(self, index):
-        """What comes before a command that is to run there."""
+        """The prefix of a command that runs there."""
         return ["ip", "netns", "exec", self.names[index]]
 
     def connect(self, there=(0, 0), back=(0, 0), congestion_control=""):
@@ -92,7 +92,7 @@ class Namespaces:
              self.names[1])
         self.address()
         for name, (delay_ms, loss_percent) in zip(self.names, (there, back)) if bad else ():
-            # Segments as they go over a wire: netem would lose 64 kB at a time else.
+            # Segments of the size on a wire: otherwise netem loses 64 kB at a time.
             call("ip", "-n", name, "link", "set", "link0", "gso_max_segs", "1")
             call("tc", "-n", name, "qdisc", "add", "dev", "link0", "root", "netem", "limit", PACKETS, "delay",
                  f"{delay_ms}ms", "loss", f"{loss_percent}%")
@@ -120,9 +120,9 @@ class Namespaces:
         subprocess.run(["ip", "-n", self.names[0], "link", "delete", "link0"], check=False, stderr=subprocess.DEVNULL)
 
     def cut(self):
-        """Packets go to nobody, as by a radio out of reach: no program is told."""
+        """Packets go to a missing host, as by a radio out of reach: no program gets an error."""
         for name, other in zip(self.names, reversed(self.addresses)):
-            call("ip", "-n", name, "neighbour", "replace", other, "lladdr", NOBODY, "nud", "permanent", "dev", "link0")
+            call("ip", "-n", name, "neighbour", "replace", other, "lladdr", NO_HOST, "nud", "permanent", "dev", "link0")
 
     def mend(self):
         for name, other in zip(self.names, reversed(self.addresses)):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The parts `live` and `start` of scripts/bench: the nodelets fed at 30 frames a second, as by a
-camera. What becomes of each frame, how long after it was sent its transform is there, and how soon
-after roslaunch the first pose comes."""
+"""The parts `live` and `start` of scripts/bench: the nodelets fed at 30 frames a second, as by a camera. Measured are
+the fate of each frame, the time until its transform, and the time from roslaunch to the first pose."""
 import os
 import re
 import shutil

@@ -76,7 +76,8 @@ class Machines(Runs):
         call(PROGRAMS / "posefusion_to_bag", sequence, self.output / "machines.bag")
 
     def session(self, link, during, *arguments):
-        """Plays the bag on the robot; calls `during` when it has begun. Returns what came where."""
+        """Plays the bag on the robot; calls `during` when it has begun. Returns the
+        lines of the probes, the bytes that the robot sent, and the result of `during`."""
         note("a bag from one namespace to the other")
         with Computers(self.output / "machines_session", link) as session:
             session.start("robot", "roslaunch", "posefusion", "robot.launch", *TOPICS)
@@ -117,7 +118,7 @@ class Machines(Runs):
         self.row(f"{name}: the same, 95 % within", sorted(ways_ms)[int(0.95 * (len(ways_ms) - 1))], "ms", digits=0)
 
     def pose_rows(self, name, noted):
-        """Of the poses that were told at the time."""
+        """Of the live poses."""
         file = self.output / "machines_poses.txt"
         located = [(stamp, pose) for _, stamp, _, (found, *pose) in noted["status"] if found == "True"]
         file.write_text("".join(" ".join((stamp, *pose)) + "\n" for stamp, pose in located))

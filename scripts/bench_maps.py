@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes of maps: against the true surface, people who come and go, and the long walks with
-their ferns and loops."""
+"""Maps against the true surface, with people that come and go, and of long walks with their ferns and loops."""
 import math
 
 from bench_runs import Runs, poses
@@ -26,7 +25,7 @@ class Maps(Runs):
         self.row(f"{name}, surfels in two layers of one surface", 100 * found["two_layers"], "%", 2, digits=2)
 
     def wrong_loops(self, name, sequence, folder, barred=True):
-        """Whether the loops that the map was corrected by are true."""
+        """Whether the loops that corrected the map are true."""
         found = self.evaluate("loops", folder / "map.pfdb", sequence)
         self.row(f"{name}, loops that hold and are wrong", found["wrong"], f"of {found['loops']}",
                  0 if barred else None, digits=0)
@@ -88,7 +87,7 @@ class Maps(Runs):
         self.row(f"{name}, peak memory", summary["peak_memory_mb"], "MB", bar(1500), digits=0)
 
     def known_rows(self, name, sequence, folder, status, barred):
-        """Frames with a pose, of those that truly see what was mapped."""
+        """Share of frames with a pose, of those that truly see mapped surfaces."""
         known = self.evaluate("known", folder, sequence, "--status", status)
         self.row(f"{name}, sharp frames that see what was mapped", known["known"],
                  f"of {known['sharp']}", digits=0)

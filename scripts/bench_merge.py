@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two maps that become one: of two recordings of one room, and of rooms that have nothing in common."""
+"""Two maps merged into one: of two recordings of one room, and of rooms that have nothing in common."""
 import pathlib
 import shutil
 
@@ -59,7 +59,7 @@ class Merge(Runs):
         self.row(f"{name}: surfels in two layers of one surface", 100 * surface["two_layers"], "%", digits=2)
 
     def merge_files(self, first, second):
-        """(the new map, what the program said)."""
+        """(the new map, the output of the program)."""
         note(f"merging {first.parent.parent.name} and {second.parent.parent.name}")
         both = self.output / f"{first.parent.parent.name}_merged.pfdb"
         both.unlink(missing_ok=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""People found by the package's own model, alone and beside the network: masks, map, time."""
+"""People detected by the package's own model, alone and beside the network: masks, map, time."""
 import json
 import shutil
 import statistics
@@ -8,7 +8,7 @@ from bench_report import call
 from bench_runs import PROGRAMS, newest, note
 from bench_recordings import Recordings
 
-# Simulated people whom the model was not trained with: rooms of its training are made otherwise.
+# Simulated people outside the model's training, whose rooms are made differently.
 MOVING = ("walking_static", "walking_xyz", "walking_halfsphere", "walking_rpy", "sitting_static",
           "sitting_xyz", "sitting_halfsphere")
 SECONDS = 10
@@ -25,7 +25,7 @@ class People(Recordings):
             self.people_of_kitchen("network+embedded", self.both(), iou=0.75, precision=0.93)
             self.people_of_kitchen("network", self.network_arguments(), iou=0.74, precision=0.95)
             self.people_speed()
-        self.nobody()
+        self.empty_scenes()
         self.simulated_people()
         self.people_in_map()
 
@@ -44,8 +44,8 @@ class People(Recordings):
             self.row(f"{name}, detector beside the other stages, median",
                      summary["stages"]["pose"]["median_ms"], "ms", digits=2)
 
-    def nobody(self):
-        """Where there is nobody, everything masked is wrong."""
+    def empty_scenes(self):
+        """Where there are no people, everything masked is wrong."""
         sources = {name: self.simulated(name, 1, SECONDS) for name in ("empty_room", "lab")}
         sources["kitchen_static"] = self.options.data / "kitchen_static"
         for name, source in sources.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What scripts/bench prints: rows of figures with their bars."""
+"""The output of scripts/bench: rows of figures with their bars."""
 import os
 import pathlib
 import platform
@@ -7,7 +7,7 @@ import subprocess
 
 
 class Failed(Exception):
-    """A program ended with an error; the message is what it said."""
+    """A program ended with an error; the message is its output."""
 
 
 def call(*command, **named):
@@ -24,9 +24,9 @@ class Report:
         self.rows = []
 
     def row(self, what, value, unit, bar=None, most=True, digits=4, live=None):
-        """One figure. `bar`: it must be at most that (or at least, where `most` is false). None: there
-        is none (nothing was located, say), and the bar is missed. `live`: the same figure of the poses
-        as they were told at the time, in the same unit; the bar is not for it."""
+        """One figure. `bar`: it must be at most that (or at least, where `most` is false). None: there is none (nothing
+        was located, say), and the bar is missed. `live`: the same figure of the poses as reported at the time, in the
+        same unit, without a bar."""
         kept = None if bar is None else value is not None and (value <= bar if most else value >= bar)
         text = "none" if value is None else f"{value:.{digits}f} {unit}".strip()
         if live is not None:

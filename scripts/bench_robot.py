@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The robot's other sensors: what they gain along bare walls and in falls, and what garbage costs."""
+"""The robot's other sensors: their gain along bare walls and in falls, and the cost of wrong data."""
 import math
 import random
 import statistics
@@ -33,7 +33,7 @@ def walking_alone(rows):
     return [[r[0], f"{0.5 * (float(r[0]) - start):.6f}", "0", "0", "0", "0", "0", "1"] for r in rows]
 
 
-# What a robot sends when something is wrong with it.
+# Odometry of a robot with something wrong.
 GARBAGE = {
     "frozen": lambda rows: [[r[0], *rows[0][1:]] for r in rows],
     "twice as far": lambda rows: scaled(rows, 2),
@@ -49,7 +49,7 @@ GARBAGE = {
 
 
 def tilt_deg(sequence, trajectory):
-    """How far the up of a trajectory is from that of the truth, median over its poses."""
+    """The angle between the vertical of a trajectory and the true one, median over its poses."""
     truth = poses(sequence / "groundtruth.txt")
     angles = []
     for stamp, (_, q) in poses(trajectory).items():

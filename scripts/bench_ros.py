@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the parts of scripts/bench need that run the nodelets: a ROS master of their own, and input."""
+"""For the parts of scripts/bench that run the nodelets: a ROS master of their own, and input."""
 import os
 import pathlib
 import shutil
@@ -51,7 +51,7 @@ class Session:
             return False
 
     def start(self, name, *command):
-        """The process; what it says is in said(name)."""
+        """The process; its output is in said(name)."""
         with open(self.folder / f"{name}.log", "w", encoding="utf-8") as log:
             process = subprocess.Popen(
                 ["bash", "-c", f"source '{ROOT}/devel/setup.bash' && exec \"$@\"", "bash", *map(str, command)],
@@ -64,7 +64,7 @@ class Session:
         return (self.folder / f"{name}.log").read_text(encoding="utf-8", errors="replace")
 
     def run(self, name, *command, timeout=PATIENCE_S):
-        """What a program said that ends by itself."""
+        """The output of a program that ends by itself."""
         process = self.start(name, *command)
         if process.wait(timeout) != 0:
             raise Failed(f"{name}: {self.said(name)[-500:]}")

@@ -50,7 +50,7 @@ def poses(path):
 
 
 def plain(argument):
-    """What of an argument may be part of a folder's name."""
+    """An argument as part of a folder's name."""
     return "".join(c for c in argument if c.isalnum() or c == "_")
 
 
@@ -115,14 +115,14 @@ class Runs(Report):
         return sequence, *self.run(name, sequence, *detector, *settings, "--save-status", status)
 
     def ate_row(self, what, summary, bar=None, digits=4):
-        """The error of a run's trajectory as loops have corrected it in the end, which `bar` is for, and
-        beside it that of the poses that the robot was told at the time. No figure without truth."""
+        """The error of a run's trajectory as loops have corrected it in the end, which `bar` is for, and beside it that
+        of the live poses. No figure without truth."""
         self.row(what, summary.get("ate_rmse_m"), "m", bar, digits=digits,
                  live=summary.get("live", {}).get("ate_rmse_m"))
 
     def wrong_rows(self, name, summary, bar=0):
-        """Jumps and slides (a bad motion over a second), and poses that are somewhere else than told
-        (from the start), each in the end and at the time."""
+        """Jumps and slides (a bad motion over a second), and poses off from the truth (aligned at the start), each in
+        the end and at the time."""
         live = summary.get("live", {})
         self.row(f"{name}, wrong poses", summary["wrong_poses"], "", bar, digits=0,
                  live=live.get("wrong_poses"))

@@ -61,7 +61,7 @@ class Soak(Runs):
 
     def chain_rows(self, name, memory_mb, said):
         if len(memory_mb) < 6:
-            raise Failed(f"{name}: too short to tell of growth")
+            raise Failed(f"{name}: too short to measure growth")
         third = len(memory_mb) // 3
         middle, last = statistics.median(memory_mb[third:2 * third]), statistics.median(memory_mb[-third:])
         self.row(f"soak, {name}, memory in the last third", last, "MB", digits=0)

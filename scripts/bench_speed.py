@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times, the yardstick that they are held against, the blur gate, and repeatability."""
+"""Times and the yardstick that they are compared with, the blur gate, and repeatability."""
 import filecmp
 import json
 import os
@@ -10,8 +10,7 @@ import statistics
 from bench_report import call
 from bench_runs import PROGRAMS, ROOT, Runs, newest, note
 
-# Builds are compared at the same work: older ones show the network every 5th frame where nothing
-# else is said.
+# Builds are compared at the same work: the default of older ones is the network in every 5th frame.
 LOOKS_AS_BEFORE = "--set", "pose.every_nth_frame=5"
 
 
@@ -30,8 +29,8 @@ class Speed(Runs):
         self.row("kitchen_people, peak memory", max(s["peak_memory_mb"] for s in found), "MB", digits=0)
 
     def yardstick(self):
-        """Machines differ by a factor of two from day to day: a speed counts as a ratio to
-        something that everybody has, on the same frames, in turns."""
+        """Machines differ by a factor of two from day to day: a speed is given as a ratio to that of OpenCV's odometry,
+        on the same frames, in turns."""
         data = self.options.data / "kitchen_people"
         theirs, ours, ratios, gains = [], [], [], []
         for i in range(self.options.repeats):
@@ -72,7 +71,7 @@ class Speed(Runs):
                  1.2, digits=2)
 
     def big_correction(self):
-        """All of a building bends, room by room copies of one: what the tracking thread has to do of it."""
+        """All of a building of copies of one room is corrected: the work that this leaves to the tracking thread."""
         note("correcting a map of 10 million surfels and 5,000 keyframes")
         found = json.loads(call(PROGRAMS / "posefusion_big_correction",
                                 self.options.data / "kitchen_static"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Simulated rooms in which things are moved: what the map has of them at the end, how soon it follows, and
-what that costs the path."""
+"""Simulated rooms in which things are moved: what is left of them in the map at the end, how soon it follows, and the
+cost for the trajectory."""
 import json
 
 from bench_people import EMBEDDED
@@ -41,8 +41,8 @@ class Things(Runs):
     def place_rows(self, name, places, bar):
         """How long the camera had to look until the map had followed."""
         seen = [place for place in places if place["seen_after_s"] is not None]
-        told = [place for place in seen if place["told_after_s"] is not None]
-        self.row(f"{name}, of those seen", len(told), f"of {len(seen)}", len(seen), most=False, digits=0)
-        if told:
+        followed = [place for place in seen if place["told_after_s"] is not None]
+        self.row(f"{name}, of those seen", len(followed), f"of {len(seen)}", len(seen), most=False, digits=0)
+        if followed:
             self.row(f"{name}, after being in view for, worst",
-                     max(place["of_it_in_view_s"] for place in told), "s", bar, digits=2)
+                     max(place["of_it_in_view_s"] for place in followed), "s", bar, digits=2)

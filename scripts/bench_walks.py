@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Simulated walks and falls: who is lost, where, and does the chain say so?"""
+"""Simulated walks and falls: where the camera is lost, and whether the chain reports it."""
 import csv
 import json
 
@@ -21,7 +21,7 @@ def states(folder):
 
 class Walks(Falls, Maps):
     def check_track(self, name, sequence, folder, summary):
-        """Wrong and false poses of a run; what posefusion_evaluate tells of it. Draws the plan."""
+        """Wrong and false poses of a run, by posefusion_evaluate. Draws the plan."""
         plan = folder / "plan.png"
         self.wrong_rows(name, summary)
         return self.evaluate(sequence, folder, "--plan", plan)
@@ -72,7 +72,7 @@ class Walks(Falls, Maps):
         after = self.after_loss(folder)
         posed = sum(row["has_pose"] == "1" for row in after)
         text = "never lost" if not after else "yes" if posed == 0 else f"{posed} poses after it"
-        # Whoever says that he is back has to be where he says.
+        # A camera that is located again has to be where it is reported.
         stays = bool(after) and posed == 0
         self.fact(f"{name}, lost stays lost", stays or track["false_poses"] == 0, text)
 
@@ -94,7 +94,7 @@ class Walks(Falls, Maps):
                                              folder / "map.pfdb"))
 
     def told_wrong(self):
-        """Five wrong loops that agree with each other, told while loop_room is mapped."""
+        """Five wrong loops that agree with each other, added while loop_room is mapped."""
         for seed in self.options.seeds:
             sequence = self.simulated("loop_room", seed)
             found = {}
@@ -103,12 +103,12 @@ class Walks(Falls, Maps):
                 found[loops] = json.loads(call(PROGRAMS / "posefusion_wrong_loops", sequence,
                                                "--detector", "recorded", "--loops", str(loops),
                                                "--seed", str(seed)))
-            told = found[5]
+            wrong = found[5]
             name = f"loop_room {seed}, recorded, five wrong loops told"
-            self.row(f"{name}: in the graph at a time", told["held_at_a_time"], "", digits=0)
-            self.row(f"{name}: in the end", told["held_in_the_end"], "", 0, digits=0)
-            self.row(f"{name}: ATE RMSE, not refined", told["ate_rmse_m"], "m")
-            self.row(f"{name}: that against none told", told["ate_rmse_m"] / found[0]["ate_rmse_m"],
+            self.row(f"{name}: in the graph at a time", wrong["held_at_a_time"], "", digits=0)
+            self.row(f"{name}: in the end", wrong["held_in_the_end"], "", 0, digits=0)
+            self.row(f"{name}: ATE RMSE, not refined", wrong["ate_rmse_m"], "m")
+            self.row(f"{name}: that against none told", wrong["ate_rmse_m"] / found[0]["ate_rmse_m"],
                      "x", 1.1, digits=2)
 
     def come_back(self):

@@ -11,7 +11,7 @@ rule all:
         "index.html",
 
 
-# What failed is told in its figures, so that the table of the others comes about.
+# A failed run is recorded in its figures, so that the table of the others is still written.
 rule report:
     input:
         expand("figures/{run}.json", run=RUNS),

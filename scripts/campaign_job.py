@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One job of a campaign, in the campaign's folder: campaign_job.py simulate NAME | run NAME SETTING | report.
-Folders of recordings and runs are made under another name, and get theirs when they are whole."""
+"""One job of a campaign, in the campaign's folder: campaign_job.py simulate NAME | run NAME SETTING | report. Folders
+of recordings and runs are made under another name and renamed when they are complete."""
 import datetime
 import json
 import pathlib
@@ -31,20 +31,20 @@ def simulate(plan, name):
 
 
 def run(plan, name, setting):
-    told, final = plan["runs"][f"{name}/{setting}"], pathlib.Path("runs", name, setting)
+    job, final = plan["runs"][f"{name}/{setting}"], pathlib.Path("runs", name, setting)
     source = plan["recordings"][name]["path"] or pathlib.Path("recordings", name)
     made = final.with_name(f".{setting}.part")
     try:
         shutil.rmtree(made, ignore_errors=True)
         made.mkdir(parents=True)
         # One thread for each run: as many runs at a time as there are cores leave none idle.
-        call(PROGRAMS / "posefusion_run", source, "--output", made, "--threads", "1", *told["arguments"])
+        call(PROGRAMS / "posefusion_run", source, "--output", made, "--threads", "1", *job["arguments"])
         replace_folder(newest(made).resolve(), final)
         shutil.rmtree(made)
         figures = figures_of(final)
     except (Failed, OSError, LookupError, ValueError) as error:
         figures = {"failed": str(error)}
-    keep(pathlib.Path("figures", name, f"{setting}.json"), told["key"], figures)
+    keep(pathlib.Path("figures", name, f"{setting}.json"), job["key"], figures)
 
 
 def write(path, text):
@@ -62,8 +62,8 @@ def sections_of(plan):
 
 
 def report(plan):
-    figures = {run: kept(pathlib.Path("figures", run + ".json"), told["key"]) or {"failed": "not run"}
-               for run, told in plan["runs"].items()}
+    figures = {run: kept(pathlib.Path("figures", run + ".json"), job["key"]) or {"failed": "not run"}
+               for run, job in plan["runs"].items()}
     tables, timing = tables_of(plan, figures), timing_of(plan, figures)
     facts = [("build", plan["build"]), ("machine", machine()), ("date", f"{datetime.date.today()}"),
              *plan["facts"].items()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a campaign consists of: read from its file, checked, and written down for its jobs."""
+"""The recordings and settings of a campaign: read from its file, checked, and written for its jobs."""
 import contextlib
 import dataclasses
 import fcntl
@@ -17,7 +17,7 @@ NAME = re.compile(r"[\w.-]+$")
 
 
 class Wrong(Exception):
-    """A sentence about the campaign's file: what is in it and what was expected."""
+    """An error in the campaign's file: what it has and what was expected."""
 
 
 @dataclasses.dataclass
@@ -71,13 +71,13 @@ def recordings_of(entry, folder, where):
 def read(file):
     """{"recordings": [Recording], "settings": {name: arguments}} of a campaign's file."""
     try:
-        told = yaml.safe_load(file.read_text())
+        content = yaml.safe_load(file.read_text())
     except yaml.YAMLError as error:
         raise Wrong(f"{file}: {' '.join(str(error).split())}") from error
-    if not isinstance(told, dict):
+    if not isinstance(content, dict):
         raise Wrong(f"{file}: expected recordings and settings")
-    checked(told, ("recordings", "settings"), str(file))
-    listed, settings = told.get("recordings") or [], told.get("settings") or {"default": ""}
+    checked(content, ("recordings", "settings"), str(file))
+    listed, settings = content.get("recordings") or [], content.get("settings") or {"default": ""}
     if not isinstance(listed, list) or not listed or not isinstance(settings, dict):
         raise Wrong(f"{file}: expected a list of recordings, and settings by name")
     recordings = [recording for i, entry in enumerate(listed)
@@ -91,8 +91,8 @@ def read(file):
 
 
 class Plan:
-    def __init__(self, told, output):
-        self.output, self.recordings, self.settings = output, told["recordings"], told["settings"]
+    def __init__(self, campaign, output):
+        self.output, self.recordings, self.settings = output, campaign["recordings"], campaign["settings"]
         self.file = output / "plan.json"
         self.build = build_of()
 
@@ -106,7 +106,7 @@ class Plan:
             yield
 
     def source(self, recording):
-        """What a recording is made of, so that a changed one is run again."""
+        """Identifies the sources of a recording, so that a changed one is run again."""
         if not recording.path:
             return fingerprint(recording.arguments[0], recording.arguments)
         path = pathlib.Path(recording.path)
@@ -142,7 +142,7 @@ class Plan:
         return len(self.recordings) * len(self.settings)
 
     def sweep(self):
-        """What is of other sources, and figures of runs that failed, go; how many runs are missing."""
+        """Removes results of other sources and figures of failed runs; returns how many runs are missing."""
         (self.output / "index.html").unlink(missing_ok=True)  # the tables may be of another file
         for recording in self.recordings:
             made_from = self.output / "recordings" / recording.name / "made_from"

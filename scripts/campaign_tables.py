@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of a campaign: recordings down, settings across. What depends on the machine has tables of its own."""
+"""The tables of a campaign: recordings down, settings across. Figures that depend on the machine have tables of their
+own."""
 import json
 
 from report_tables import Cell, Table, failed
 
 # (key, title, unit, digits), in the order in which they stand.
 RESULTS = (("ate_m", "ATE RMSE, as loops have corrected it in the end", "m", 4),
-           ("live_ate_m", "ATE RMSE, as told at the time", "m", 4),
+           ("live_ate_m", "ATE RMSE, as reported at the time", "m", 4),
            ("pose_percent", "Frames with a pose", "%", 1), ("false_poses", "False poses", "poses", 0),
            ("wrong_poses", "Wrong poses", "poses", 0), ("loops", "Loops", "loops", 0),
            ("surfels", "Surfels", "surfels", 0))

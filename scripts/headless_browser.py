@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Chromium without a display, drawn by software, told what to do over a pair of pipes (DevTools protocol)."""
+"""Chromium without a display, drawn by software, controlled over a pair of pipes (DevTools protocol)."""
 import base64
 import json
 import os
@@ -36,7 +36,7 @@ class Browser:
         self.answers, answers = os.pipe()
         # Root has no sandbox of its own; what is opened are our own pages.
         flags = FLAGS + (("--no-sandbox",) if os.geteuid() == 0 else ())
-        # It reads commands from 3 and answers on 4; where the pipes lie is told to the shell.
+        # It reads commands from descriptor 3 and answers on 4, which the shell connects to the pipes.
         run = f'exec "$0" "$@" 3<&{commands} 4>&{answers}'
         self.process = subprocess.Popen(
             ["sh", "-c", run, program, *flags, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={self.folder}"],
@@ -121,11 +121,11 @@ class Browser:
         return time.monotonic() - begin
 
     def requests(self):
-        """Addresses that the page has asked for since it was opened."""
+        """Addresses that the page has requested since it was opened."""
         return [e["params"]["request"]["url"] for e in self.events if e.get("method") == "Network.requestWillBeSent"]
 
     def errors(self):
-        """What the page has thrown or complained of since it was opened."""
+        """Exceptions and errors of the page since it was opened."""
         kinds = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled"}
         return [json.dumps(e["params"]) for e in self.events if e.get("method") in kinds]
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fetches public recordings and unpacks them: what is there is not fetched again, what does not have its checksum is
-refused, and nothing is half there."""
+"""Fetches public recordings and unpacks them: existing ones are not fetched again, those with a wrong checksum are
+refused, and no partial one is left."""
 import hashlib
 import json
 import pathlib
@@ -19,7 +19,7 @@ class Refused(Exception):
 
 
 def fetch(url, path):
-    """The file's sha256. Says on stderr how far it is."""
+    """The file's sha256. Prints its progress on stderr."""
     digest, got = hashlib.sha256(), 0
     with urllib.request.urlopen(url, timeout=60) as answer, open(path, "wb") as out:
         size = int(answer.headers.get("Content-Length") or 0)
@@ -39,7 +39,7 @@ def fetch(url, path):
 
 
 def members(archive):
-    """(name, is a file or a folder) of what is in it."""
+    """(name, is a file or a folder) of its members."""
     if isinstance(archive, zipfile.ZipFile):
         return [(info.filename, (info.external_attr >> 28) not in (0xA,)) for info in archive.infolist()]
     return [(info.name, info.isfile() or info.isdir()) for info in archive.getmembers()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a report tells of a run: its summary, and its trajectories against the truth."""
+"""Measures a run for a report: its summary, and its trajectories against the truth."""
 import bisect
 import hashlib
 import json
@@ -31,7 +31,7 @@ def people_left(sequence, folder):
 
 
 def from_summary(summary):
-    """Of a recording whose truth is not in a folder: what the run itself has told."""
+    """Errors from the run's own summary, for a recording whose truth is not in a folder."""
     final = {"ate_m": summary.get("ate_rmse_m"), "rpe_m_s": summary.get("rpe_trans_m_per_s"), "rpe_m_frame": None,
              "wrong": summary.get("wrong_poses"), "false": summary.get("false_poses"),
              "coverage": summary["frames"]["pose_share"]}

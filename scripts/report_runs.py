@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The runs of a report, each done once: what was measured before is kept, what failed is tried again."""
+"""The runs of a report, each done once: earlier results are kept, failed runs are tried again."""
 import hashlib
 import json
 import os
@@ -23,7 +23,7 @@ def commit():
 
 
 def build_of():
-    """What decides the result of a run: the commit, and the programs themselves."""
+    """Identifies the programs of a run: the commit, and the programs themselves."""
     digest = hashlib.sha256()
     for path in (PROGRAMS / "posefusion_run", PROGRAMS.parent / "libposefusion_core.so"):
         if path.is_file():
@@ -42,7 +42,7 @@ def machine():
 
 
 class Progress:
-    """Says on stderr what is done, and how long the rest will take by what the frames took so far."""
+    """Prints progress on stderr, with the remaining time by the frames so far."""
 
     def __init__(self, total):
         self.total, self.done, self.ran, self.ran_s = total, 0, 0, 0.0

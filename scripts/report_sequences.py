@@ -33,7 +33,7 @@ class Sequence:
         return (self.path / "groundtruth.txt").is_file()
 
     def fingerprint(self):
-        """Changes when the recording does; images are told by their names and sizes alone."""
+        """Changes when the recording does; images count by their names and sizes alone."""
         digest = hashlib.sha256()
         if self.path.is_file():
             return f"{self.path.name} {self.path.stat().st_size}"

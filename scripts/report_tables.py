@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of a report, without a form: which cell stands where, and what it says."""
+"""The tables of a report, independent of the format: their cells and places."""
 import dataclasses
 import statistics
 
@@ -17,7 +17,7 @@ class Cell:
     least: float = None
     most: float = None
     runs: int = 0
-    note: str = ""  # what a reader must know of it: its source, or why it is empty
+    note: str = ""  # its source, or why it is empty
 
 
 @dataclasses.dataclass
@@ -107,7 +107,7 @@ class Tables:
 
     @staticmethod
     def quoted(entry, sequence, words):
-        """A cell of the literature; `words` tells what the value looks like."""
+        """A cell of the literature; `words` formats the value."""
         value = entry["values"].get(sequence.name)
         if value is None:
             return Cell("", LITERATURE, note="no figure published")
@@ -159,7 +159,7 @@ class Tables:
             return f"{value:g}", value
 
         return self.table(name, title, unit, lambda results, kind: error_cell(results, what, digits, kind), of, words,
-                          "First the trajectory as loops have corrected it in the end, then (live) as it was told at "
+                          "First the trajectory as loops have corrected it in the end, then (live) as reported at "
                           "the time, each with the share of frames that have a pose. Falls are not left out.")
 
     def loops(self):
