@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Takes up training from an exported model, when its checkpoint is gone."""
+"""Continues training from an exported model, when its checkpoint is gone."""
 import math
 
 import onnx

@@ -56,7 +56,7 @@ class Report:
         self.near_joints = np.zeros(2, int)
 
     def add_mask(self, known, truth, mask):
-        """Truth (bool) where there is depth; the answer, where it says person."""
+        """Truth (bool) where there is depth; the answer, true for people."""
         truth = truth & known
         answer = cv2.resize(mask, known.shape[::-1], interpolation=cv2.INTER_LINEAR) > MASK_LEVEL
         answer &= known

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Training pictures from posefusion_person_data, and what the network shall answer to them."""
+"""Training pictures from posefusion_person_data, and the answers that the network learns."""
 import queue
 import subprocess
 import threading
@@ -15,7 +15,7 @@ SAMPLE = np.dtype([("depth", "<u2", (120, 160)), ("person", "u1", (120, 160)),
 MIRRORED = [0, 1, 5, 6, 7, 2, 3, 4, 11, 12, 13, 8, 9, 10, 15, 14, 17, 16]
 NEAREST_M, FARTHEST_M = 0.25, 8.0
 JOINT_SIGMA, CENTRE_SIGMA = 0.9, 1.3  # cells of 4x4 pixels
-LEAST_PIXELS = 30  # of a person whose centre is asked for
+LEAST_PIXELS = 30  # of a person whose centre is learned
 
 
 def generate(program, seed, first_room, rooms, threads=1):
@@ -69,7 +69,7 @@ class Pool:
 
 
 def network_input(depth_mm):
-    """Bx3x120x160 of depth in millimetres, as depth_input.hpp says."""
+    """Bx3x120x160 of depth in millimetres, as depth_input.hpp makes it."""
     depth = torch.from_numpy(depth_mm.astype(np.float32)) / 1000
     valid = (depth > NEAREST_M) & (depth < FARTHEST_M)
     safe = torch.where(valid, depth, torch.ones(()))
@@ -96,7 +96,7 @@ def bells(places, present, sigma):
 
 
 def targets(samples):
-    """What the network shall answer, and where it matters."""
+    """The answers that the network learns, and their weights."""
     person = torch.from_numpy((samples["person"] > 0).astype(np.float32))
     seen = torch.from_numpy((samples["depth"] > 0).astype(np.float32))
     pooled = torch.nn.functional.avg_pool2d

@@ -22,7 +22,7 @@ GENERATOR = ROOT / "devel" / "lib" / "posefusion" / "posefusion_person_data"
 
 
 def started():
-    """Training that goes on from the model of the package."""
+    """Training continued from the model of the package."""
     training = Training(argparse.Namespace(seed=1, rate=1e-3, bfloat16=False))
     load_exported(training.network, MODEL, network_input(SAMPLES["depth"]))
     return training
