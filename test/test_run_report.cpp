@@ -228,7 +228,7 @@ TEST_F(RunReportTest, LivePosesAreComparedWithTheTruthToo) {
   EXPECT_GT(s.at("ate_rmse_m").get<double>(), 0.04);
   EXPECT_EQ(s.at("live").at("false_poses"), 0);
   EXPECT_NEAR(s.at("live").at("ate_rmse_m").get<double>(), 0, 1e-9);
-  EXPECT_NE(report.table().find("as told at the time"), std::string::npos) << report.table();
+  EXPECT_NE(report.table().find("as reported at the time"), std::string::npos) << report.table();
 }
 
 TEST_F(RunReportTest, AnEmptyMapIsWrittenWithoutAPicture) {

@@ -91,7 +91,7 @@ TEST_F(ToolsTest, EvaluateReportsCoverageWrongPosesAndCovariance) {
   EXPECT_NEAR(track.at("live").at("worst_m").get<double>(), 0.5, 0.05);
   ASSERT_EQ(run({sequence(), out}, "posefusion_evaluate"), 0) << said;
   EXPECT_TRUE(hasSaid("final, loops corrected")) << said;
-  EXPECT_TRUE(hasSaid("live, as told")) << said;
+  EXPECT_TRUE(hasSaid("live, as reported")) << said;
   ASSERT_EQ(run({sequence(), live_file, "--json"}, "posefusion_evaluate"), 0) << said;
   EXPECT_FALSE(nlohmann::json::parse(said).contains("live")) << "a file is what it is";
 

@@ -174,7 +174,7 @@ void RunReport::writeTrajectories(const std::string& folder,
   if (live_.empty()) return;
   saveTrajectory(folder + "/trajectory_live.txt", inWorld(T_world_map, live_),
                  "pose of the camera (optical frame: z forward, x right, y down) in the map (z "
-                 "up), as told when the frame came: loops found later do not correct it");
+                 "up), as reported when the frame came: loops found later do not correct it");
 }
 
 void RunReport::writeSummary(const std::string& folder, std::size_t surfels) const {
@@ -202,7 +202,7 @@ std::string RunReport::errorLines() const {
   if (const auto live = liveErrors()) {
     out << "live     ATE " << fixed(live->ate_m.rmse, 4) << " m, " << live->wrong << " wrong, "
         << live->false_count
-        << " false, as told at the time; the above is as corrected in the end\n";
+        << " false, as reported at the time; the above is as corrected in the end\n";
   }
   out << "RPE      " << fixed(e->per_second.translation_m.rmse, 4) << " m/s, "
       << fixed(e->per_second.rotation_deg.rmse, 3) << " deg/s RMSE\n";

@@ -112,7 +112,7 @@ void printTrackTable(const TrackAnswer& a, bool with_scale) {
   std::printf("%-24s %10s %10s %10s %10s %10s %8s %8s\n", "", "rmse", "max", "rmse", "max", "max",
               "false", "wrong");
   printPlaces(a.live ? "final, loops corrected" : "trajectory", e);
-  if (a.live) printPlaces("live, as told", *a.live);
+  if (a.live) printPlaces("live, as reported", *a.live);
   std::printf(
       "false: poses off by more than 0.10 m or 5 deg, aligned on the first second; drift counts\n"
       "wrong: poses whose motion over the second before is off by as much: jumps and slides "
