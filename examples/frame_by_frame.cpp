@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Stands for the driver of a camera: calls back with each frame. An own one fills color (R G B),
+/// Takes the place of a camera's driver: calls back with each frame. A driver fills color (R G B),
 /// depth, camera and stamp.
 void playBack(const std::string& folder, const std::function<void(const pf::RgbdFrame&)>& call) {
   const auto recording = pf::openTumFolder(folder);

@@ -16,8 +16,8 @@ namespace posefusion_ros {
 Eigen::Isometry3d hintedPose(const geometry_msgs::PoseWithCovarianceStamped& message,
                              const std::string& map_frame);
 
-/// Hears where somebody says that the robot is (`initialpose`, as rviz sends it): a lost camera is
-/// looked for there too.
+/// Receives a user's hint of the robot's place (`initialpose`, as rviz sends it): a lost camera is
+/// searched for there too.
 class PlaceHint {
  public:
   explicit PlaceHint(ros::NodeHandle& handle);

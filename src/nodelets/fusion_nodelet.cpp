@@ -81,7 +81,7 @@ class FusionNodelet : public ChainNodelet {
                                             [this](const Set& set) { process(set); });
     map_output_ = std::make_unique<MapOutput>(handle, poses.publishing, map_frame_,
                                               [this] { worker_->post([this] { showMap(); }); });
-    // In the worker, as who listens already calls it from there.
+    // In the worker, as subscribers that are already there call it from that thread.
     worker_
         ->post([&] {
           surfaces_ = std::make_unique<SurfaceOutput>(

@@ -49,7 +49,7 @@ class PackerNodelet : public ChainNodelet {
     sets_since_look_ = true;
     const auto listeners = publisher_.getNumSubscribers();
     watch().set("listeners", std::to_string(listeners));
-    // Nothing is worked out that nobody hears; that it is not sent is no fault.
+    // Without subscribers nothing is packed, which is no fault.
     if (listeners == 0 || !rate_->lets(set.color.stamp_ns)) {
       watch().givenUp(std::chrono::steady_clock::now(), TrackingStatusMsg::PAUSED);
       return;

@@ -85,8 +85,8 @@ class UnpackerNodelet : public ChainNodelet {
     const std::string topic = subscriber_.getTopic();
     const std::string hint =
         subscriber_.getNumPublishers() > 0
-            ? "its publisher is there: see what it says, and whether the link is"
-            : "nobody publishes it" +
+            ? "its publisher is there: see its log, and whether the link is"
+            : "it has no publisher" +
                   topicHint({topic, "posefusion/CompressedFrame"}, getNodeHandle().getNamespace());
     NODELET_WARN("nothing on %s for %.0f s (%s)", topic.c_str(), missing_after_s_, hint.c_str());
   }

@@ -77,7 +77,7 @@ struct Mapper::State {
   bool may_change = true;           ///< the map
   std::vector<MapPose> rooms;       ///< of a loaded map until it is found: where to look
   std::size_t next_room = 0;
-  std::optional<MapPose> hint;  ///< where somebody says that the camera is, until it is found
+  std::optional<MapPose> hint;  ///< a user's hint of the camera's place, until it is found
   // Of the depth camera.
   std::optional<DepthCalibration> calibration;  ///< nothing: depth is taken as measured
   DepthCorrector corrector{DepthField()};       ///< by it
