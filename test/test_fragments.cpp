@@ -147,6 +147,7 @@ void findAt(Carried& run, int index, const MapPose& pose) {
   answer.asked_for_place = true;
   answer.place.emplace();
   answer.place->doubt = PlaceDoubt::none;
+  answer.place->log_odds = 10;
   answer.place->fragment = pose.fragment;
   answer.place->alignment.T_map_camera = pose.T_map_camera;
   run.mapper_.take(answer);

@@ -8,7 +8,6 @@
 #include "posefusion/core/static_odds.hpp"
 
 namespace pf {
-namespace {}  // namespace
 
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
                           bool nobody_in_view) {
@@ -92,7 +91,7 @@ PlaceVerdict PairAligner::align(const KeyframePicture& from, const KeyframePictu
   verdict.alignment = track(to.frame, from.points, start, tracking_);
   seenFrom(from.model, verdict.alignment.T_map_camera, seen_);
   verdict.agreement = compareViews(to.frame, seen_);
-  verdict.doubt = judgePlace(verdict, T_from_to_guess, limits_);
+  judgePlace(verdict, tracking_);
   return verdict;
 }
 

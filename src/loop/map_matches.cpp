@@ -18,6 +18,9 @@ constexpr std::size_t kNearest = 2;
 constexpr double kSame_m = 0.1, kSame_rad = 0.1;
 // Views that are looked for by drawing: seconds each, of a large map.
 constexpr std::size_t kDrawnFor = 8;
+// Views with less of them in the merged map say nothing of it; more than this seen through, and
+// things were moved, or the maps lie badly.
+constexpr double kLeastOverlap = 0.25, kMostSeenThrough = 0.1;
 
 KeyframeView placed(KeyframeView view, const MapPose& pose) {
   view.pose = pose;
@@ -121,16 +124,15 @@ std::vector<PoseConstraint> MapMatcher::verified(const std::vector<KeyframeView>
 
 LookedThrough lookedThrough(const SurfelMap& map, const std::vector<KeyframeView>& views,
                             const DepthSensor& sensor) {
-  const VerifyLimits limits;
   LookedThrough result;
   PlaceVerifier verifier({});
   KeyframePicture picture;
   for (const KeyframeView& view : views) {
     picture.assign(view, sensor);
-    const PlaceAgreement seen = verifier.compare(map, picture.frame, view.pose);
-    if (seen.overlap < limits.min_overlap) continue;
+    const ViewAgreement seen = verifier.compare(map, picture.frame, view.pose);
+    if (seen.overlap < kLeastOverlap) continue;
     ++result.compared;
-    result.through += seen.seen_through > limits.max_seen_through ? 1U : 0U;
+    result.through += seen.seen_through > kMostSeenThrough ? 1U : 0U;
   }
   return result;
 }

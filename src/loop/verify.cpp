@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/loop/verify.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,12 +38,32 @@ PlaceVerdict likeliest(std::vector<PlaceVerdict>& places, const ExpectedPlace* e
   return places[0];
 }
 
+PlaceDoubt doubtOf(PoseSign weakest) {
+  switch (weakest) {
+    case PoseSign::overlap:
+      return PlaceDoubt::little_overlap;
+    case PoseSign::contradicted:
+    case PoseSign::hidden:
+      return PlaceDoubt::disagrees;
+    case PoseSign::seen_through:
+      return PlaceDoubt::seen_through;
+    case PoseSign::correlation:
+      return PlaceDoubt::other_picture;
+    case PoseSign::view:
+      return PlaceDoubt::covered;
+    case PoseSign::log_spread:
+    case PoseSign::log_sigma:
+      return PlaceDoubt::degenerate;
+  }
+  return PlaceDoubt::degenerate;
+}
+
 }  // namespace
 
 std::string_view name(PlaceDoubt doubt) {
   constexpr std::array<std::string_view, kPlaceDoubts> kNames = {
-      "none",       "covered",   "little_overlap", "not_converged", "degenerate",
-      "moved_away", "disagrees", "seen_through",   "other_picture", "ambiguous"};
+      "none",      "covered",      "little_overlap", "not_converged", "degenerate",
+      "disagrees", "seen_through", "other_picture",  "ambiguous"};
   return kNames.at(static_cast<std::size_t>(doubt));
 }
 
@@ -55,46 +74,22 @@ TrackingStart freeStart(const Eigen::Isometry3d& T_map_camera) {
   return start;
 }
 
-double positionSigma(const Matrix6d& covariance) {
-  const Eigen::Matrix3d of_shift = covariance.topLeftCorner<3, 3>();
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_shift).eigenvalues()[2]));
+void judgePlace(PlaceVerdict& verdict, const TrackingConfig& config) {
+  const PoseEvidence evidence = poseEvidence(poseSigns(verdict.alignment, verdict.agreement));
+  verdict.log_odds = evidence.log_odds;
+  if (!verdict.alignment.converged) {
+    verdict.doubt = PlaceDoubt::not_converged;
+  } else if (!isKnown(verdict.alignment)) {
+    verdict.doubt = PlaceDoubt::degenerate;
+  } else if (evidence.log_odds < logOdds(config.sure_to_return)) {
+    verdict.doubt = doubtOf(evidence.weakest);
+  } else {
+    verdict.doubt = PlaceDoubt::none;
+  }
 }
 
-bool hasShape(const PlaceAgreement& agreement, const VerifyLimits& limits) {
-  return agreement.overlap >= limits.shape_overlap && agreement.spread >= limits.shape_spread;
-}
-
-PlaceDoubt judgePlace(const PlaceVerdict& v, const Eigen::Isometry3d& T_map_candidate,
-                      const VerifyLimits& limits) {
-  const Eigen::Isometry3d step = T_map_candidate.inverse() * v.alignment.T_map_camera;
-  if (v.agreement.view < limits.min_view) return PlaceDoubt::covered;
-  if (v.agreement.overlap < limits.min_overlap) return PlaceDoubt::little_overlap;
-  if (!v.alignment.converged) return PlaceDoubt::not_converged;
-  // A person or thing new in front of the map does not contradict the place, up to a point.
-  const double visible = 1.0 - v.agreement.hidden;
-  const bool both = v.agreement.spread >= limits.shape_of_both &&
-                    v.agreement.correlation >= limits.correlation_of_both;
-  const double least_agreeing = both ? limits.min_agreeing_of_both : limits.min_agreeing;
-  if (v.agreement.hidden > limits.max_hidden || v.agreement.agreeing < least_agreeing * visible) {
-    return PlaceDoubt::disagrees;
-  }
-  if (v.agreement.seen_through > limits.max_seen_through) return PlaceDoubt::seen_through;
-  const double least =
-      hasShape(v.agreement, limits) ? limits.min_correlation_of_shape : limits.min_correlation;
-  if (v.agreement.correlation < least) return PlaceDoubt::other_picture;
-  if (v.alignment.free_directions > 0 ||
-      positionSigma(v.alignment.covariance) > limits.max_sigma_m) {
-    return PlaceDoubt::degenerate;
-  }
-  if (!isWithin(step, limits.max_shift_m, limits.max_turn_rad)) {
-    return PlaceDoubt::moved_away;
-  }
-  return PlaceDoubt::none;
-}
-
-PlaceAgreement PlaceVerifier::compare(const SurfelMap& map, const WorkingFrame& frame,
-                                      const MapPose& pose) {
+ViewAgreement PlaceVerifier::compare(const SurfelMap& map, const WorkingFrame& frame,
+                                     const MapPose& pose) {
   RenderOptions options;
   options.age = SurfelAge::all;
   options.fragment = pose.fragment;
@@ -122,7 +117,7 @@ PlaceVerdict PlaceVerifier::verify(const SurfelMap& map, const WorkingFrame& fra
     if (step.translation().norm() < kSettled_m && angleOf(step) < kSettled_rad) break;
   }
   verdict.agreement = compare(map, frame, verdict.pose());
-  verdict.doubt = judgePlace(verdict, candidate.T_map_camera, limits_);
+  judgePlace(verdict, tracking_);
   return verdict;
 }
 
@@ -139,7 +134,7 @@ PlaceVerdict PlaceVerifier::verifyBest(const SurfelMap& map, const WorkingFrame&
                                    [&](const auto& p) { return isSamePlace(p, verdict); });
     if (same == places.end()) {
       places.push_back(verdict);
-    } else if (verdict.score() > same->score()) {
+    } else if (verdict.log_odds > same->log_odds) {
       *same = verdict;
     }
     if (places.size() > 1 && expected == nullptr) break;

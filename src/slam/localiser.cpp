@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "posefusion/calibration/depth_correction.hpp"
-#include "posefusion/loop/verify.hpp"
 
 namespace pf {
 namespace {
@@ -48,7 +47,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   const PosePrior prior = expect(frame, stamp_ns, flow, view, told, location);
   Verdict verdict;
-  location.tracking = align(frame, prior, render.model, verdict);
+  location.tracking = align(frame, forced, prior, render, verdict);
   if (verdict.outcome == FrameOutcome::fused) {
     verdict = askFurther(frame, location, prior, {stamp_ns, forced}, render.view);
   }
@@ -58,7 +57,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;
   if (state_ == TrackingState::lost) {
-    prove(frame, prior, location, render);
+    prove(frame, prior, location, render.view);
     if (location.is_return) trust(location, stamp_ns, elapsed_s);
   } else if (verdict.outcome == FrameOutcome::fused) {
     trust(location, stamp_ns, elapsed_s);
@@ -72,9 +71,17 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   return location;
 }
 
+/// Whether the images prove an alignment as far as its verdict asks; while lost `prove` does it.
+bool Localiser::isProven(const WorkingFrame& frame, const TrackingResult& result,
+                         const Verdict& verdict, const MapRenderers& render) const {
+  if (verdict.proof == Proof::none || state_ == TrackingState::lost) return true;
+  const double needed = verdict.proof == Proof::likely ? 0.0 : logOdds(config_.sure_to_return);
+  return poseEvidence(frame, result, render.view(result.T_map_camera)).log_odds >= needed;
+}
+
 /// Aligns from the prediction and, where the result is not believed, from other starts.
-TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prior,
-                                const ModelRenderer& render, Verdict& verdict) const {
+TrackingResult Localiser::align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
+                                const MapRenderers& render, Verdict& verdict) const {
   TrackingResult best;
   best.T_map_camera = prior.T_map_camera;
   const double pixels = static_cast<double>(frame.depth_m.total());
@@ -84,10 +91,15 @@ TrackingResult Localiser::align(const WorkingFrame& frame, const PosePrior& prio
     return best;
   }
   const auto attempt = [&](const Eigen::Isometry3d& guess, bool firm) {
-    const RenderedModel model = render(guess);
+    const RenderedModel model = render.model(guess);
     const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
     const TrackingResult result = track(frame, model.points, start, config_);
-    const Verdict found = judge(frame, result, prior, config_);
+    Verdict found = judge(frame, result, prior, config_);
+    // A blurred picture proves nothing, and is not fused.
+    if (found.outcome == FrameOutcome::fused && !forced &&
+        !isProven(frame, result, found, render)) {
+      found.outcome = prior.is_measured ? FrameOutcome::disagrees : FrameOutcome::jumped;
+    }
     const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
     if (!better) return false;
     best = result;
@@ -137,8 +149,7 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
 bool Localiser::isReckonedWell(const Location& location, const PosePrior& prior,
                                double reckoned_s) const {
   const SparseMotion& motion = location.motion;
-  if (location.has_odometry && positionSigma(prior.covariance) <= VerifyLimits().max_sigma_m)
-    return true;
+  if (location.has_odometry && positionSigma(prior.covariance) <= kKnownSigma_m) return true;
   return motion.found && motion.inliers >= kManyCorners &&
          motion.inliers >= kMostCorners * motion.matches && reckoned_s < kMaxReckoning_s &&
          isWithin(motion.T_before_after, kMaxReckoned_m_s * pace_.frame_s,
@@ -173,8 +184,8 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   location.state = state_ = lost ? TrackingState::lost : TrackingState::doubtful;
   location.fragment = located_.fragment;
   location.T_map_camera = located_.T_map_camera;
-  proofs_ = 0;
-  is_suggested_ = is_place_verified_ = false;
+  belief_ = 0;
+  is_suggested_ = false;
 }
 
 void Localiser::move(const Eigen::Isometry3d& T_new_old, int fragment) {

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a lost camera comes back.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
-#include "posefusion/loop/verify.hpp"
 #include "posefusion/slam/localiser.hpp"
+#include "posefusion/tracking/pose_evidence.hpp"
 
 namespace pf {
 namespace {
 
 // Of the frame before the first: no flow begins there, and trusted_ns_ is another one.
 constexpr std::int64_t kNoFrame = -1;
-// After a loss an alignment has to look better than usual, in so many frames in a row, before it is
-// believed.
-constexpr double kProof_s = 1.0 / 3.0;
-constexpr double kProofOfPlace_s = 0.1;  // where the place was already verified
-constexpr int kFewestProofs = 2;         // one frame fits none before it
+// Frames of so long see nearly the same: together they say little more than one.
+constexpr double kSameView_s = 0.5;
+// No frame speaks louder than this for a place, whatever the model says.
+constexpr double kMostSure = 0.9999;
+// A place that a search has found is confirmed by frames of so long.
+constexpr double kConfirmed_s = 0.1;
 constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
-constexpr double kProofStep_m = 0.03, kProofStep_rad = 0.03;
+// Two frames are of one place when the way between them is what was expected, to this.
+constexpr double kSameWay_m = 0.03, kSameWay_rad = 0.03;
 
 // After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
 // it, and one frame is little to go by.
@@ -31,28 +34,24 @@ constexpr double kMaxForcedWay_m = 0.12;
 // searched place: often only corners remain, and some lie on people that were missed.
 constexpr double kLittleView = 0.4;
 
-int proofsIn(double seconds, const Pace& pace) {
-  return std::max(kFewestProofs, pace.framesIn(seconds));
-}
+/// How much of what frames of so long say is new.
+double shareOfNews(double seconds) { return 1.0 - std::exp(-seconds / kSameView_s); }
 
 /// Describes how badly a pose from little of the picture is known; empty: well enough.
 std::string poorlyKnown(const WorkingFrame& frame, const TrackingResult& tracking) {
   if (frame.valid_pixels >= kLittleView * static_cast<double>(frame.depth_m.total())) return {};
   const double sigma_m = positionSigma(tracking.covariance);
-  if (sigma_m <= VerifyLimits().max_sigma_m) return {};
+  if (sigma_m <= kKnownSigma_m) return {};
   char text[48];
   std::snprintf(text, sizeof text, "little in view, known to %.3f m", sigma_m);
   return text;
 }
 
-/// The pose of an alignment, asked as strictly as a place that was searched.
-PlaceVerdict askStrictly(const WorkingFrame& frame, const TrackingResult& tracking,
-                         const ViewRenderer& render) {
-  PlaceVerdict verdict;
-  verdict.alignment = tracking;
-  verdict.agreement = compareViews(frame, render(tracking.T_map_camera));
-  verdict.doubt = judgePlace(verdict, tracking.T_map_camera, {});
-  return verdict;
+std::string describe(const PoseEvidence& evidence) {
+  char text[64];
+  std::snprintf(text, sizeof text, "evidence %.1f, least by %s", evidence.log_odds,
+                std::string(name(evidence.weakest)).c_str());
+  return text;
 }
 
 }  // namespace
@@ -74,16 +73,12 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
   }
   const bool is_after_gap =
       state_ == TrackingState::doubtful && (blind_s > kMaxBlind_s || way.norm() > kMaxBlind_m);
-  const bool is_alone = !prior.is_measured && !agree(prior.T_map_camera, tracking.T_map_camera);
-  if (!is_after_gap && !is_alone) return {};
-  const PlaceVerdict strict = askStrictly(frame, tracking, render);
-  const bool by_shape =
-      !is_after_gap && strict.doubt == PlaceDoubt::other_picture && hasShape(strict.agreement);
-  if (strict.accepted() || by_shape) return {};
-  char why[64] = "no corner measures the motion";
-  if (is_after_gap) std::snprintf(why, sizeof why, "after %.1f s without a pose", blind_s);
-  return {FrameOutcome::disagrees,
-          std::string(why) + ", the map from there: " + std::string(name(strict.doubt))};
+  if (!is_after_gap) return {};
+  const PoseEvidence evidence = poseEvidence(frame, tracking, render(tracking.T_map_camera));
+  if (isKnown(tracking) && evidence.log_odds >= logOdds(config_.sure_to_return)) return {};
+  char why[48];
+  std::snprintf(why, sizeof why, "after %.1f s without a pose: ", blind_s);
+  return {FrameOutcome::disagrees, why + describe(evidence)};
 }
 
 void Localiser::beginLost(const MapPose& pose, const Brightness& brightness) {
@@ -96,64 +91,63 @@ void Localiser::beginLost(const MapPose& pose, const Brightness& brightness) {
   brightness_ = brightness;
 }
 
-/// Lost: an alignment is believed once it has looked right for several frames that also fit each
-/// other. Where no search has verified the place, the last of them is: tracking is content with
-/// less, and an alignment that slid along a wall or a floor looks right to it in every frame.
-void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
-                      const MapRenderers& render) {
-  const int needed = proofsIn(kProof_s, pace_);
-  // A blurred frame proves nothing, but what was proven goes on through it.
-  const bool is_blurred = location.outcome == FrameOutcome::forced;
-  const bool looks_right = (is_blurred || location.outcome == FrameOutcome::fused) &&
-                           (is_place_verified_ || isProof(location.tracking, frame.valid_pixels));
+/// What the frame says for or against the pose that is carried along (Wald's sequential test, with
+/// the news in each frame discounted: what is seen again is hardly news, what contradicts is).
+void Localiser::gatherEvidence(const WorkingFrame& frame, const PosePrior& prior,
+                               const Location& location, const ViewRenderer& render) {
+  if (location.outcome == FrameOutcome::forced) return;  // a blurred frame says nothing
+  if (location.outcome != FrameOutcome::fused) {
+    belief_ = 0;
+    return;
+  }
   const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
-                                kProofStep_m, kProofStep_rad);
-  // A suggested place is better known than where the camera went from it.
-  const bool fits = follows || std::exchange(is_suggested_, false);
-  proofs_ = looks_right ? (fits ? proofs_ : 0) + (is_blurred ? 0 : 1) : 0;
-  is_place_verified_ = is_place_verified_ && looks_right && fits;
-  // After a verified place the next view may hardly constrain the pose.
-  const bool is_unsure = is_place_verified_ &&
-                         positionSigma(location.tracking.covariance) > VerifyLimits().max_sigma_m;
-  if (is_unsure) proofs_ = std::min(proofs_, needed - 1);
-  if (proofs_ >= needed) {
-    const PlaceDoubt doubt = is_place_verified_
-                                 ? PlaceDoubt::none
-                                 : askStrictly(frame, location.tracking, render.view).doubt;
-    location.is_return = doubt == PlaceDoubt::none;
-    if (location.is_return) {
-      frames_since_return_ = 0;
-      return;
-    }
-    proofs_ = 0;
-    location.outcome = FrameOutcome::disagrees;
-    location.detail = "after " + std::to_string(needed) +
-                      " frames, the map from there: " + std::string(name(doubt));
+                                kSameWay_m, kSameWay_rad);
+  // A place just found is better known than where the camera went from it.
+  if (!std::exchange(is_suggested_, false) && !follows) belief_ = 0;
+  const TrackingResult& tracking = location.tracking;
+  const PoseEvidence evidence = poseEvidence(frame, tracking, render(tracking.T_map_camera));
+  const double says = std::min(logOdds(kMostSure), evidence.log_odds);
+  belief_ = std::max(0.0, belief_ + (says > 0 ? shareOfNews(frame.pace.frame_s) : 1.0) * says);
+}
+
+/// Lost: the pose that is carried along is right once the evidence of some frames says so.
+void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
+                      const ViewRenderer& render) {
+  gatherEvidence(frame, prior, location, render);
+  const double needed = logOdds(config_.sure_to_return);
+  // The next view may hardly constrain the pose.
+  if (belief_ >= needed && isKnown(location.tracking) && location.outcome == FrameOutcome::fused) {
+    location.is_return = true;
+    frames_since_return_ = 0;
+    return;
   }
   // Good enough to track on is not good enough to come back: only `trust` lets a frame be fused.
   if (location.outcome == FrameOutcome::fused) {
     location.outcome = FrameOutcome::unproven;
-    location.detail = std::to_string(proofs_) + " of " + std::to_string(needed) + " frames";
+    char text[48];
+    std::snprintf(text, sizeof text, "evidence %.1f of %.1f", belief_, needed);
+    location.detail = text;
   }
-  previous_.T_map_camera = looks_right ? location.tracking.T_map_camera : prior.T_map_camera;
-  previous_.covariance = looks_right ? location.tracking.covariance : prior.covariance;
+  const bool is_carried_on = belief_ > 0;
+  previous_.T_map_camera = is_carried_on ? location.tracking.T_map_camera : prior.T_map_camera;
+  previous_.covariance = is_carried_on ? location.tracking.covariance : prior.covariance;
   previous_.velocity.setZero();
   location.state = TrackingState::lost;
   location.fragment = located_.fragment;
   location.T_map_camera = located_.T_map_camera;
 }
 
-void Localiser::suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned) {
-  // What only looks right gives way to a place that was verified.
-  if (state_ != TrackingState::lost || is_place_verified_) return;
-  const Eigen::Isometry3d T_map_now = pose.T_map_camera * T_reckoned.inverse() * T_reckoned_;
+void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_reckoned) {
+  if (state_ != TrackingState::lost || belief_ >= place.log_odds) return;
+  const Eigen::Isometry3d T_map_now =
+      place.alignment.T_map_camera * T_reckoned.inverse() * T_reckoned_;
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
-  previous_.fragment = pose.fragment;
+  previous_.fragment = place.fragment;
   previous_.T_map_camera = T_map_now;
   previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
   previous_.velocity.setZero();
-  proofs_ = proofsIn(kProof_s, pace_) - proofsIn(kProofOfPlace_s, pace_);
-  is_suggested_ = is_place_verified_ = true;
+  belief_ = logOdds(config_.sure_to_return) - shareOfNews(kConfirmed_s) * logOdds(kMostSure);
+  is_suggested_ = true;
 }
 
 /// Gives up a place suggested in another fragment than that of the last pose.
@@ -161,8 +155,8 @@ void Localiser::goBackToLast() {
   landmarks_.move(located_.T_map_camera * previous_.T_map_camera.inverse());
   previous_.fragment = located_.fragment;
   previous_.T_map_camera = located_.T_map_camera;
-  proofs_ = 0;
-  is_suggested_ = is_place_verified_ = false;
+  belief_ = 0;
+  is_suggested_ = false;
 }
 
 }  // namespace pf

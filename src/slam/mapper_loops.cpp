@@ -146,7 +146,7 @@ void Mapper::take(const LoopAnswer& answer) {
   if (answer.asked_for_place) {
     s.place_is_asked = false;
     if (answer.place && !s.place_is_stale) {
-      s.localiser.suggest(answer.place->pose(), s.T_reckoned_at_question);
+      s.localiser.suggest(*answer.place, s.T_reckoned_at_question);
       if (s.at_question.keyframe >= 0 && s.may_change) s.placeFragment(*answer.place);
     }
   }

@@ -14,14 +14,13 @@ constexpr double kMaxMahalanobis2 = 30.0;
 constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
 // A converged alignment may still be a step of this from its end.
 constexpr double kUnfinished_m = 0.004, kUnfinished_rad = 0.004;
-// Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
-// follow an unmasked person. Not so for a step that no robot makes between two frames.
-constexpr double kStrongInliers = 0.6, kStrongOverlap = 0.3, kStrongSeenThrough = 0.12;
+// A step from a measured prediction that the images may prove: no robot makes a longer one between
+// two frames.
 constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
 // Part of the model's points that a frame may see through: things are moved, people were fused.
 constexpr double kMaxSeenThrough = 0.25;
-// What has to prove itself must look better than usual.
-constexpr double kProvenInliers = 0.65, kProvenOverlap = 0.3, kProvenSeenThrough = 0.06;
+// Part of the frame in the map below which a free direction is not left to the prior.
+constexpr double kLeastOverlap = 0.3;
 
 std::string stepText(const Eigen::Isometry3d& step, const char* what) {
   char text[96];
@@ -41,13 +40,6 @@ Matrix6d covarianceOfDifference(const PosePrior& prior, const TrackingResult& r)
   return 0.5 * (sum + sum.transpose()) + independentCovariance(kUnfinished_m, kUnfinished_rad);
 }
 
-/// Enough agreement, of enough of the frame, with little seen through?
-bool isStrong(const TrackingResult& r, int valid_pixels, double inliers, double overlap,
-              double seen_through) {
-  return r.converged && r.free_directions == 0 && r.inliers >= inliers * r.candidates &&
-         r.candidates >= overlap * valid_pixels && r.seen_through <= seen_through * r.candidates;
-}
-
 }  // namespace
 
 std::string percentOf(double part, double whole, const char* what) {
@@ -58,10 +50,6 @@ std::string percentOf(double part, double whole, const char* what) {
 
 bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return isWithin(a.inverse() * b, kAgreeing_m, kAgreeing_rad);
-}
-
-bool isProof(const TrackingResult& result, int valid_pixels) {
-  return isStrong(result, valid_pixels, kProvenInliers, kProvenOverlap, kProvenSeenThrough);
 }
 
 Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrior& prior,
@@ -79,24 +67,27 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
     return {FrameOutcome::seen_through, percentOf(r.seen_through, r.candidates, "of the model")};
   }
   if (r.free_directions > 0 && !prior.is_measured) return {FrameOutcome::degenerate, ""};
-  if (r.free_directions > 0 && r.candidates < kStrongOverlap * frame.valid_pixels) {
+  if (r.free_directions > 0 && r.candidates < kLeastOverlap * frame.valid_pixels) {
     return {FrameOutcome::degenerate,
             percentOf(r.candidates, frame.valid_pixels, "of the frame in the map")};
   }
   const Eigen::Isometry3d difference = prior.T_map_camera.inverse() * r.T_map_camera;
   if (agree(prior.T_map_camera, r.T_map_camera)) return {};
   const std::string text = stepText(difference, "from the prediction");
-  // Anything may have happened where nothing was measured: the images alone have to prove it.
-  if (!prior.is_measured && !isProof(r, frame.valid_pixels)) return {FrameOutcome::jumped, text};
   const Vector6d error = logSe3(difference);
   const Matrix6d covariance = covarianceOfDifference(prior, r);
-  if (error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2) return {};
+  const bool is_expected = error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2;
+  // Anything may have happened where nothing was measured: the images alone have to prove it.
+  if (is_expected) {
+    return {FrameOutcome::fused, text, prior.is_measured ? Proof::none : Proof::likely};
+  }
   if (!prior.is_measured) return {FrameOutcome::jumped, text};
-  const bool overruled =
-      isStrong(r, frame.valid_pixels, kStrongInliers, kStrongOverlap, kStrongSeenThrough) &&
-      isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad);
-  if (overruled) return {};
-  return {FrameOutcome::disagrees, text};
+  if (!isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad)) {
+    return {FrameOutcome::disagrees, text};
+  }
+  // Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
+  // follow an unmasked person.
+  return {FrameOutcome::fused, text, Proof::sure};
 }
 
 }  // namespace pf

@@ -159,6 +159,7 @@ class Walk {
     answer.asked_for_place = true;
     answer.place.emplace();
     answer.place->doubt = PlaceDoubt::none;
+    answer.place->log_odds = 10;
     answer.place->alignment.T_map_camera = room_.poses.at(index).T_world_camera;
     mapper_.take(answer);
   }

@@ -46,8 +46,7 @@ void seenFrom(const ModelView& view, const Eigen::Isometry3d& T_view_camera, Mod
 /// not thread safe.
 class PairAligner {
  public:
-  explicit PairAligner(const TrackingConfig& tracking, const VerifyLimits& limits = {})
-      : tracking_(tracking), limits_(limits) {}
+  explicit PairAligner(const TrackingConfig& tracking) : tracking_(tracking) {}
 
   /// Starts from a guess. The pose of the verdict is T_from_to, its covariance the twist's in the
   /// camera frame of `to`.
@@ -56,7 +55,6 @@ class PairAligner {
 
  private:
   TrackingConfig tracking_;
-  VerifyLimits limits_;
   ModelView seen_;
 };
 

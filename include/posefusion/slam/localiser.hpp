@@ -8,6 +8,7 @@
 
 #include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/frame/flow.hpp"
+#include "posefusion/loop/verify.hpp"
 #include "posefusion/robot/motion_prior.hpp"
 #include "posefusion/slam/recent_motion.hpp"
 #include "posefusion/slam/status.hpp"
@@ -87,8 +88,8 @@ class Localiser {
   std::int64_t lastStamp() const { return previous_.stamp_ns; }
 
   TrackingState state() const { return state_; }
-  /// While lost: the last frames agreed with the map at some place, and with each other.
-  bool isProving() const { return proofs_ > 0; }
+  /// While lost: the last frames speak for some place.
+  bool isProving() const { return belief_ > 0; }
   /// Between the map and the last frame that was believed.
   const Brightness& brightness() const { return brightness_; }
   /// The last pose of a located frame.
@@ -108,9 +109,9 @@ class Localiser {
   /// Depth is corrected by one more step from the next frame on.
   void correctDepth(DepthCorrector& step);
 
-  /// While lost: the camera was at `pose` when reckonedPose() was `T_reckoned`. Accepted once some
-  /// frames in a row agree.
-  void suggest(const MapPose& pose, const Eigen::Isometry3d& T_reckoned);
+  /// While lost: the camera was at `place` when reckonedPose() was `T_reckoned`. Later frames
+  /// have to confirm it.
+  void suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_reckoned);
 
   /// From the next frame on; what is known stays.
   void set(const TrackingConfig& config) { config_ = config; }
@@ -146,19 +147,23 @@ class Localiser {
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
   PosePrior predict(const Location& location, double elapsed_s) const;
-  TrackingResult align(const WorkingFrame& frame, const PosePrior& prior,
-                       const ModelRenderer& render, Verdict& verdict) const;
+  TrackingResult align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
+                       const MapRenderers& render, Verdict& verdict) const;
+  bool isProven(const WorkingFrame& frame, const TrackingResult& result, const Verdict& verdict,
+                const MapRenderers& render) const;
   void carry(const MotionPrior& step, bool is_known);
   bool isReckonedWell(const Location& location, const PosePrior& prior, double reckoned_s) const;
   void trust(Location& location, std::int64_t stamp_ns, double elapsed_s);
   void distrust(Location& location, const PosePrior& prior, std::int64_t stamp_ns);
   /// Further checks of a frame that tracking found good. Where little is in view its position must
-  /// be known as well as at a searched place; after a gap, and where no corner measures a step, it
-  /// must pass all checks of a searched place: one plane (a ceiling, in a fall) slides as it likes.
+  /// be known as well as at a searched place; after a gap the images must prove the pose as they
+  /// do at one: one plane (a ceiling, in a fall) slides as it likes.
   Verdict askFurther(const WorkingFrame& frame, const Location& location, const PosePrior& prior,
                      const Moment& moment, const ViewRenderer& render) const;
   void prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
-             const MapRenderers& render);
+             const ViewRenderer& render);
+  void gatherEvidence(const WorkingFrame& frame, const PosePrior& prior, const Location& location,
+                      const ViewRenderer& render);
   void goBackToLast();
   void remember(const WorkingFrame& frame, const SparseFlow& flow, const PosePrior& prior,
                 const Location& location, std::int64_t stamp_ns);
@@ -176,10 +181,10 @@ class Localiser {
   std::int64_t trusted_ns_ = 0;  ///< stamp of the last frame that may be fused
   std::int64_t seen_ns_ = 0;     ///< of the last that was located by its images, blurred ones too
   int untrusted_in_a_row_ = 0;
-  int reckoned_in_a_row_ = 0;       ///< of those, located by dead reckoning
-  int proofs_ = 0;                  ///< frames in a row that looked right since the loss
-  bool is_suggested_ = false;       ///< the pose comes from a place just found
-  bool is_place_verified_ = false;  ///< and later frames continue from it
+  int reckoned_in_a_row_ = 0;  ///< of those, located by dead reckoning
+  /// While lost: log-odds that the pose which is carried along is right; 0: no place is known.
+  double belief_ = 0;
+  bool is_suggested_ = false;  ///< the pose comes from a place just found
   int frames_since_return_ = 1 << 20;
 };
 

@@ -8,20 +8,24 @@
 
 namespace pf {
 
+/// How far the images alone must speak for a pose, see PoseEvidence.
+enum class Proof {
+  none,    ///< the motion was measured, or is small
+  likely,  ///< nothing measured the motion: the images rather speak for the pose than against it
+  sure     ///< what was measured says otherwise: as at a place that was searched
+};
+
 /// Whether an alignment is believed.
 struct Verdict {
-  FrameOutcome outcome = FrameOutcome::fused;  ///< `fused`: it is
+  FrameOutcome outcome = FrameOutcome::fused;  ///< `fused`: it is, given `proof`
   std::string detail;
+  Proof proof = Proof::none;
 };
 
 /// Judges an alignment by itself (overlap, agreement, what is seen through, free directions) and by
 /// what is known beside it: the prior, and whether the motion behind that was measured.
 Verdict judge(const WorkingFrame& frame, const TrackingResult& result, const PosePrior& prior,
               const TrackingConfig& config);
-
-/// Is the alignment good enough to be believed where nothing else is known: after a loss, after a
-/// motion that nothing measured? `valid_pixels` are those of the frame.
-bool isProof(const TrackingResult& result, int valid_pixels);
 
 /// "12 % of the pixels".
 std::string percentOf(double part, double whole, const char* what);

@@ -16,6 +16,7 @@ struct TrackingConfig {
   double min_valid_fraction = 0.03;
   double min_inlier_fraction = 0.4;
   double lost_after_s = 0.333;
+  double sure_to_return = 0.95;
 };
 
 inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
@@ -38,6 +39,9 @@ inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
       "lost_after_s", c.lost_after_s, 0.0, 100.0,
       "so long a row of untrusted frames, and tracking counts as lost (s, counted in frames at "
       "the pace of the camera: of blurred ones only those that the gate lets through)");
+  v.number("sure_to_return", c.sure_to_return, 0.5, 0.999999,
+           "how sure (a probability) a place must be to bring a lost camera back, or to close a "
+           "loop");
 }
 
 }  // namespace pf

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "posefusion/frame/depth_filter.hpp"
-#include "posefusion/loop/verify.hpp"
+#include "posefusion/tracking/view_agreement.hpp"
 
 namespace pf {
 namespace {
@@ -66,27 +66,27 @@ WorkingFrame noisyFrame(const cv::Mat& depth_m) {
   return made;
 }
 
-TEST(CompareViews, NoiseOfTheNormalsDoesNotCountAgainstAPlace) {
-  const PlaceAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner()));
+TEST(ViewAgreement, NoiseOfTheNormalsDoesNotCountAgainstAPlace) {
+  const ViewAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner()));
   EXPECT_GT(agreement.overlap, 0.95);
   EXPECT_GT(agreement.agreeing, 0.95);
   EXPECT_LT(agreement.hidden + agreement.seen_through, 0.05);
 }
 
-TEST(CompareViews, SurfacesThatFaceElsewhereDoNotAgreeThoughTheyAreAsFar) {
-  const PlaceAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner(), true));
+TEST(ViewAgreement, SurfacesThatFaceElsewhereDoNotAgreeThoughTheyAreAsFar) {
+  const ViewAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner(), true));
   EXPECT_LT(agreement.agreeing, 0.1);
 }
 
-TEST(CompareViews, WhatStandsBeforeTheMapHidesItAndWhatIsMissingIsSeenThrough) {
+TEST(ViewAgreement, WhatStandsBeforeTheMapHidesItAndWhatIsMissingIsSeenThrough) {
   const cv::Mat empty = corner();
   cv::Mat with_box = corner();
   with_box(cv::Rect(32, 60, 64, 96)).setTo(2.0F);
   const double part = 64.0 * 96.0 / (320.0 * 240.0);
-  const PlaceAgreement came = compareViews(noisyFrame(with_box), modelOf(empty));
+  const ViewAgreement came = compareViews(noisyFrame(with_box), modelOf(empty));
   EXPECT_NEAR(came.hidden, part, 0.02);
   EXPECT_LT(came.seen_through, 0.01);
-  const PlaceAgreement went = compareViews(noisyFrame(empty), modelOf(with_box));
+  const ViewAgreement went = compareViews(noisyFrame(empty), modelOf(with_box));
   EXPECT_NEAR(went.seen_through, part, 0.02);
   EXPECT_LT(went.hidden, 0.01);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "posefusion/tracking/view_agreement.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
-#include "posefusion/loop/verify.hpp"
 
 namespace pf {
 namespace {
@@ -88,7 +88,7 @@ void compareRow(const WorkingFrame& frame, const ModelView& view, int v, WindowS
 
 }  // namespace
 
-PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
+ViewAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   const FrameLevel& level = frame.levels[0];
   const int across = (level.depth_m.cols + kWindow - 1) / kWindow;
   const int down = (level.depth_m.rows + kWindow - 1) / kWindow;
@@ -97,7 +97,7 @@ PlaceAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   for (int v = 0; v < level.depth_m.rows; ++v) {
     compareRow(frame, view, v, &windows[static_cast<std::size_t>(v / kWindow * across)], counts);
   }
-  PlaceAgreement result;
+  ViewAgreement result;
   result.view = counts.valid / static_cast<double>(level.depth_m.total());
   result.overlap = counts.known / std::max(1.0, counts.valid);
   double agreeing = 0;
