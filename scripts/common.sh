@@ -62,6 +62,13 @@ build_package() {
   fi
 }
 
+# The tree as it is now, without what is ignored, into a folder that is there: copy_tree FOLDER
+copy_tree() {
+  (cd "$ROOT" && git ls-files -z --cached --others --exclude-standard |
+    while IFS= read -r -d '' file; do [ ! -e "$file" ] || printf '%s\0' "$file"; done |
+    tar --null --files-from=- --create) | tar -C "$1" --extract
+}
+
 build_release() { build_package "$ROOT/build" "$ROOT/devel" "$@"; }
 
 # Path of a program of the package in the ordinary build.

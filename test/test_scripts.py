@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SOURCES = ("include", "src", "test", "scripts", "examples", "python", "cmake", ".ci")
+SOURCES = ("include", "src", "test", "scripts", "examples", "python", "cmake", "debian", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in", ".html", ".css", ".js"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
@@ -185,6 +185,20 @@ class Repository(unittest.TestCase):
         done = subprocess.run(["catkin_lint", "--strict", "-q", str(ROOT)], stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
         self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_debian_packages_have_the_version_and_the_dependencies_of_the_rest(self):
+        version = re.search(r"<version>(.*)</version>", (ROOT / "package.xml").read_text()).group(1)
+        self.assertTrue((ROOT / "debian" / "changelog").read_text().startswith(f"posefusion ({version}) "))
+        control = (ROOT / "debian" / "control").read_text()
+        source, *packages = [set(re.findall(r"^ ([a-z0-9][a-z0-9.+-]+)(?: \(.*\))?,$", part, re.MULTILINE))
+                             for part in control.split("\n\n")]
+        setup = set(subprocess.run([str(ROOT / "scripts" / "setup"), "--list"], text=True,
+                                   stdout=subprocess.PIPE).stdout.split())
+        self.assertEqual(source - setup, {"debhelper-compat", "dh-python"})
+        tests_only = {"libgtest-dev", "librostest-dev", "libpcl-dev"}
+        self.assertEqual({p for p in setup if p.endswith("-dev")} - source, tests_only)
+        for package in packages:
+            self.assertEqual(package - setup - {"posefusion", "rospack-tools"}, set())
 
     def test_every_source_names_its_licence(self):
         for path in code_files():

@@ -8,10 +8,10 @@ namespace pf {
 
 /// Each stage keeps its settings in one struct and lists them once, in a function
 ///
-///   template <typename Visitor> void visitFields(BlurConfig& c, Visitor& visitor) {
-///     visitor.number("threshold", c.threshold, 0.0, 1e6, "variance of the Laplacian; 0 =
-///     adaptive");
-///   }
+///     template <typename Visitor> void visitFields(BlurConfig& c, Visitor& visitor) {
+///       visitor.number("threshold", c.threshold, 0.0, 1e6,
+///                      "variance of the Laplacian; 0 = adaptive");
+///     }
 ///
 /// Everything that reads, writes, checks or documents settings is a FieldVisitor over these lists.
 class FieldVisitor {
