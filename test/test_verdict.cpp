@@ -28,10 +28,11 @@ class JudgeTest : public testing::Test {
   }
 
   /// Metres from the prediction.
-  FrameOutcome judged(double step_m) {
+  Verdict verdict(double step_m) {
     result_.T_map_camera.translation().x() = step_m;
-    return judge(frame_, result_, prior_, TrackingConfig{}).outcome;
+    return judge(frame_, result_, prior_, TrackingConfig{});
   }
+  FrameOutcome judged(double step_m) { return verdict(step_m).outcome; }
 
   WorkingFrame frame_;
   TrackingResult result_;
@@ -63,13 +64,18 @@ TEST_F(JudgeTest, APredictionThatLostItsWeightMayBeLeftFarther) {
 }
 
 TEST_F(JudgeTest, WithoutCornersTheImagesHaveToProveAStep) {
-  show(0.25);
-  EXPECT_EQ(judged(0.1), FrameOutcome::fused) << "corners agree";
+  EXPECT_EQ(verdict(0.1).proof, Proof::none) << "corners agree";
   prior_.is_measured = false;
-  EXPECT_EQ(judged(0.1), FrameOutcome::jumped) << "little of the view is in the map";
-  EXPECT_EQ(judged(0.01), FrameOutcome::fused) << "as it was going to";
-  show(0.9);
-  EXPECT_EQ(judged(0.1), FrameOutcome::fused);
+  EXPECT_EQ(verdict(0.1).proof, Proof::likely);
+  EXPECT_EQ(verdict(0.01).proof, Proof::none) << "as it was going to";
+  EXPECT_EQ(judged(0.5), FrameOutcome::jumped);
+}
+
+TEST_F(JudgeTest, AgainstAMeasuredMotionTheImagesHaveToBeSure) {
+  prior_.covariance = independentCovariance(0.003, 0.003);
+  EXPECT_EQ(judged(0.07), FrameOutcome::fused);
+  EXPECT_EQ(verdict(0.07).proof, Proof::sure);
+  EXPECT_EQ(judged(0.1), FrameOutcome::disagrees) << "no robot makes such a step";
 }
 
 TEST_F(JudgeTest, WithoutCornersNoDirectionMayBeFree) {

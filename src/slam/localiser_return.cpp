@@ -141,12 +141,18 @@ void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_re
   if (state_ != TrackingState::lost || belief_ >= place.log_odds) return;
   const Eigen::Isometry3d T_map_now =
       place.alignment.T_map_camera * T_reckoned.inverse() * T_reckoned_;
+  const bool is_known_already =
+      previous_.fragment == place.fragment &&
+      isWithin(previous_.T_map_camera.inverse() * T_map_now, kSuggested_m, kSuggested_rad);
+  const double confirmed =
+      logOdds(config_.sure_to_return) - shareOfNews(kConfirmed_s) * logOdds(kMostSure);
+  if (is_known_already && belief_ >= confirmed) return;  // later frames have said so too
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
   previous_.fragment = place.fragment;
   previous_.T_map_camera = T_map_now;
   previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
   previous_.velocity.setZero();
-  belief_ = logOdds(config_.sure_to_return) - shareOfNews(kConfirmed_s) * logOdds(kMostSure);
+  belief_ = confirmed;
   is_suggested_ = true;
 }
 
