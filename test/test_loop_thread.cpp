@@ -154,6 +154,7 @@ class LoopExchanges : public testing::Test {
   explicit LoopExchanges(AnswerTime time = AnswerTime::when_ready) {
     config.frame.shrink = 1;
     config.graph.keyframe_distance_m = 0.05;
+    config.tracking.sure_to_return = 0.999;  // not before the loop closer is asked again
     auto owned = std::make_unique<FakeResponder>();
     closer = owned.get();
     mapper = std::make_unique<Mapper>(config);

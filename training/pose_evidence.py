@@ -70,8 +70,8 @@ def columns(values):
 
 
 def fit(samples, penalty):
-    """Weights (none below 0) and the constant: proximal Newton steps on the weighted log-likelihood,
-    a penalty on the weights' sizes so that terms which tell nothing are 0."""
+    """Weights (none below 0) and the constant of the likeliest model, each class weighing the same;
+    a penalty on the weights' sizes, so that terms which tell nothing are 0."""
     clear = numpy.abs(samples.off - 1) > UNCLEAR
     x, right = columns(samples.values[clear]), samples.right[clear]
     middle, scale = x.mean(axis=0), numpy.maximum(x.std(axis=0), 1e-3)
@@ -128,10 +128,10 @@ def calibration(samples, evidence):
     print(f"  calibration error {100 * error / total:.2f} %")
 
 
-def write(path, weights, constant, train):
+def write(path, weights, constant):
     """The model as the table that src/tracking/pose_evidence.cpp includes."""
     lines = ["// SPDX-License-Identifier: BSD-3-Clause",
-             "// Written by training/pose_evidence.py: models/README.md has its card.",
+             "// Written by training/pose_evidence.py: docs/algorithm-evidence.md is its card.",
              f"constexpr double kConstant = {constant:.3f};", "constexpr Term kTerms[] = {"]
     for (sign, rises, low, high), weight in zip(terms(), weights):
         if weight > 0.005:
@@ -155,7 +155,7 @@ def main():
         print(f"{sign:16s} {low:5g} to {high:5g}: {weight:8.2f}")
     print(f"constant {constant:.3f}")
     if options.write:
-        write(options.write, weights, constant, train)
+        write(options.write, weights, constant)
     report("train", train, evidence(train), options.limit)
     if options.test:
         test = Samples(options.test)
