@@ -4,21 +4,15 @@
 // with this map, and with each other, from where the search and the poses propose them. Each
 // alignment is a line: what it shows of itself, and how far it is from the truth.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "posefusion/core/error.hpp"
+#include "bent_recording.hpp"
 #include "posefusion/core/se3.hpp"
-#include "posefusion/core/stamps.hpp"
-#include "posefusion/evaluation/metrics.hpp"
-#include "posefusion/io/frame_source.hpp"
 #include "posefusion/loop/keyframe_pair.hpp"
 #include "posefusion/loop/place_search.hpp"
 #include "posefusion/loop/verify.hpp"
@@ -35,134 +29,13 @@ constexpr int kDisplaced = 6;
 constexpr double kShift_m = 0.2, kTurn_rad = 6 * kDegree, kTilt_rad = 2 * kDegree;
 constexpr std::size_t kPairsOfView = 4;
 constexpr double kPairs_m = 1.2, kPairs_rad = 25 * kDegree;
-constexpr double kElsewhere_m = 0.7, kElsewhere_rad = 40 * kDegree;
-constexpr double kLeastGap = 0.06, kMostGap = 0.5;  // part of the picture's width
-constexpr double kMaskSeen = 0.6;  // part of the frames in which people are taken out
 
 struct Options {
   std::string sequence;
   double map_share = 0.6;
-  double bend_m = 0.02, bend_deg = 0.5, bend_s = 25.0;
+  BendOptions bend;
   int query_every = 4;
   unsigned seed = 1;
-};
-
-/// A frame, and where it is in the bent map.
-struct TrueFrame {
-  WorkingFrame frame;
-  WorkingFrame through_gap;  ///< most of it covered, as by people near the camera
-  WorkingFrame repainted;    ///< with the picture of another place: a room of the same shape
-  Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
-  bool is_masked = true;
-};
-
-/// What drift adds to the poses of a map: slow, and never far.
-class Bend {
- public:
-  Bend(const Options& options, std::mt19937& chance) : options_(options) {
-    std::uniform_real_distribution<double> phase(0.0, 2 * M_PI);
-    for (double& p : phases_) p = phase(chance);
-  }
-
-  Eigen::Isometry3d at(double seconds) const {
-    Vector6d twist;
-    for (int i = 0; i < 6; ++i) {
-      const double size = i < 3 ? options_.bend_m : options_.bend_deg * kDegree;
-      const double slower = 1.0 + 0.2 * i;
-      twist[i] = size / std::sqrt(3.0) *
-                 std::sin(2 * M_PI * seconds / (slower * options_.bend_s) +
-                          phases_[static_cast<std::size_t>(i)]);
-    }
-    return expSe3(twist);
-  }
-
- private:
-  const Options& options_;
-  std::array<double, 6> phases_{};
-};
-
-/// The recording, frame by frame, with the true poses as the map has them.
-class Recording {
- public:
-  Recording(const Options& options, std::mt19937& chance)
-      : options_(options),
-        chance_(chance),
-        bend_(options, chance),
-        truth_(openTumFolder(options.sequence)->truth()),
-        frames_(listTumFrames(options.sequence).size()) {
-    if (truth_.empty()) throw InputError(options.sequence + ": has no true poses");
-  }
-
-  std::size_t size() const { return frames_; }
-
-  /// Calls `use(index, frame)` for the frames of which `isWanted(index)`.
-  template <typename Wanted, typename Use>
-  void forEach(const Wanted& isWanted, const Use& use) {
-    const auto source = openTumFolder(options_.sequence);
-    TrueFrame out;
-    for (std::size_t index = 0; auto read = source->next(); ++index) {
-      const std::int64_t stamp_ns = read->frame.stamp_ns;
-      const auto pose = poseAt(truth_, stamp_ns);
-      if (!isWanted(index) || !read->defect.empty() || !pose) continue;
-      const double seconds = 1e-9 * static_cast<double>(stamp_ns - truth_.front().stamp_ns);
-      out.T_map_camera = *pose * bend_.at(seconds);
-      takeOutPeople(read->frame, out);
-      use(index, out);
-    }
-  }
-
-  /// People stay in some of the frames from now on: a detector misses them.
-  void missSome() { all_masked_ = false; }
-
- private:
-  void takeOutPeople(RgbdFrame& frame, TrueFrame& out) {
-    const auto path =
-        std::filesystem::path(options_.sequence) / "mask" / (formatStamp(frame.stamp_ns) + ".png");
-    cv::Mat mask;
-    const bool is_seen =
-        all_masked_ || std::uniform_real_distribution<double>()(chance_) < kMaskSeen;
-    if (is_seen && std::filesystem::exists(path)) {
-      mask = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
-    }
-    if (!mask.empty()) frame.depth.setTo(0, mask > 0);
-    out.is_masked = is_seen;
-    out.frame.assign(frame, mask, FrameConfig{});
-    RgbdFrame changed = frame;
-    changed.depth = frame.depth.clone();
-    cover(changed.depth);
-    out.through_gap.assign(changed, mask, FrameConfig{});
-    repaint(frame, out.T_map_camera);
-    out.repainted.assign(frame, mask, FrameConfig{});
-  }
-
-  /// Leaves an upright gap.
-  void cover(cv::Mat& depth) {
-    std::uniform_real_distribution<double> width(kLeastGap, kMostGap), place;
-    const int open = static_cast<int>(width(chance_) * depth.cols);
-    const int from = static_cast<int>(place(chance_) * (depth.cols - open));
-    depth.colRange(0, from).setTo(0);
-    depth.colRange(from + open, depth.cols).setTo(0);
-  }
-
-  void repaint(RgbdFrame& frame, const Eigen::Isometry3d& T_map_camera) {
-    const bool is_elsewhere =
-        !isWithin(T_seen_.inverse() * T_map_camera, kElsewhere_m, kElsewhere_rad);
-    if (color_.empty() || is_elsewhere) {
-      other_color_ = color_.empty() ? frame.color : color_;
-      color_ = frame.color;
-      T_seen_ = T_map_camera;
-    }
-    frame.color = other_color_;
-  }
-
-  const Options& options_;
-  std::mt19937& chance_;
-  Bend bend_;
-  Trajectory truth_;
-  std::size_t frames_;
-  cv::Mat color_, other_color_;  ///< of about here, and of where the camera was before
-  Eigen::Isometry3d T_seen_ = Eigen::Isometry3d::Identity();
-  bool all_masked_ = true;
 };
 
 /// A pose beside the given one, as those that are proposed are.
@@ -292,7 +165,7 @@ class PairSampler {
 
 int poseSamples(const Options& options) {
   std::mt19937 chance(options.seed);
-  Recording recording(options, chance);
+  BentRecording recording(options.sequence, options.bend, chance);
   const auto mapped =
       static_cast<std::size_t>(options.map_share * static_cast<double>(recording.size()));
   SurfelMap map{MapConfig{}};
@@ -323,7 +196,7 @@ int run(int argc, char** argv) {
   Options options;
   app.addOption("sequence", options.sequence, "TUM folder with true poses and masks")->required();
   app.addOption("--map-share", options.map_share, "part of the recording that is mapped");
-  app.addOption("--bend", options.bend_m, "how far drift bends the map, m");
+  app.addOption("--bend", options.bend.shift_m, "how far drift bends the map, m");
   app.addOption("--query-every", options.query_every, "of the odd frames")->check(positive());
   app.addOption("--seed", options.seed, "of displacements and missed people");
   return runTool(app, argc, argv, [&] { return poseSamples(options); });
