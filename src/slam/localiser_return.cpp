@@ -110,7 +110,8 @@ void Localiser::gatherEvidence(const WorkingFrame& frame, const PosePrior& prior
   belief_ = std::max(0.0, belief_ + (says > 0 ? shareOfNews(frame.pace.frame_s) : 1.0) * says);
 }
 
-/// Lost: the pose that is carried along is right once the evidence of some frames says so.
+/// While lost: relocalises once the evidence gathered over frames is as much as `sure_to_return`
+/// asks.
 void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Location& location,
                       const ViewRenderer& render) {
   gatherEvidence(frame, prior, location, render);
