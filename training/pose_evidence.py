@@ -110,8 +110,8 @@ def report(name, samples, evidence, limit):
 
 
 def calibration(samples, evidence):
-    """Largest and mean difference between the stated and the true probability, right and wrong
-    weighing the same; in bins of a tenth."""
+    """Prints the stated and the true probability in bins of a tenth, right and wrong weighing the
+    same, and their mean difference."""
     stated = 1 / (1 + numpy.exp(-evidence))
     weight = numpy.where(samples.right, 0.5 / samples.right.sum(), 0.5 / (~samples.right).sum())
     error, total = 0.0, 0.0
