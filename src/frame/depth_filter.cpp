@@ -14,6 +14,10 @@ namespace {
 constexpr std::size_t kRowGrain = 8;
 constexpr int kRadius = 3;
 constexpr float kSpatialSigma_px = 2.25F;
+// Smoothing leaves so much of the noise of a pixel.
+constexpr float kLeftBySmoothing = 0.25F;
+constexpr float kMostNormalNoise_rad = 0.26F;
+constexpr float kFarthest_m = 20.0F, kDepthStep_m = 0.05F;
 
 /// Pixels whose depths differ by less belong to one surface (a slope of 45 degrees over a few
 /// pixels is still one).
@@ -183,6 +187,31 @@ void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, const D
               ray_x.data(), static_cast<float>((v - camera.cy) / camera.fy),
               static_cast<float>(1.0 / camera.fx), static_cast<float>(1.0 / camera.fy), sensor,
               rows[0], rows[1], rows[2], width);
+  });
+}
+
+float noisyNormalsFrom(const PinholeCamera& camera, const DepthSensor& sensor) {
+  const auto baseline_px = 2.0F / static_cast<float>(camera.fx);
+  const auto noise = [&](float z) {
+    return kLeftBySmoothing * sensor.sigma(z) / (baseline_px * z);
+  };
+  float from_m = kFarthest_m;  // noise is large very near, too, where the sensor measures nothing
+  while (from_m > kDepthStep_m && noise(from_m) > kMostNormalNoise_rad) from_m -= kDepthStep_m;
+  return from_m;
+}
+
+void takeCoarseNormals(const cv::Mat& depth_m, float from_m, const std::array<cv::Mat, 3>& coarse,
+                       int factor, const std::array<cv::Mat*, 3>& normals) {
+  forRows(std::min(depth_m.rows, factor * coarse[0].rows), [&](int v) {
+    const float* z = depth_m.ptr<float>(v);
+    const int width = std::min(depth_m.cols, factor * coarse[0].cols);
+    const float* seen = coarse[2].ptr<float>(v / factor);
+    for (int u = 0; u < width; ++u) {
+      if (z[u] < from_m || seen[u / factor] == 0.0F) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        normals[i]->ptr<float>(v)[u] = coarse[i].ptr<float>(v / factor)[u / factor];
+      }
+    }
   });
 }
 

@@ -70,6 +70,14 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
     computeNormals(level.depth_m, level.camera, sensor, level.normal_x, level.normal_y,
                    level.normal_z);
   }
+  const FrameLevel& coarsest = levels[kLevels - 1];
+  const float from_m = noisyNormalsFrom(camera, sensor);
+  for (int i = 0; i < kLevels - 1; ++i) {
+    FrameLevel& level = levels[i];
+    takeCoarseNormals(level.depth_m, from_m,
+                      {coarsest.normal_x, coarsest.normal_y, coarsest.normal_z},
+                      1 << (kLevels - 1 - i), {&level.normal_x, &level.normal_y, &level.normal_z});
+  }
 }
 
 WorkingFrame WorkingFrame::clone() const {

@@ -12,7 +12,7 @@ struct DepthConfig {
   std::string kind = "structured_light";
   bool noise = true;
   double min_m = 0.5;
-  double max_m = 5.0;
+  double max_m = 8.0;
   double baseline_m = 0.075;     ///< between projector and infrared camera
   double disparity_steps = 8.0;  ///< steps a pixel of disparity
   double axial = 1.0;            ///< noise along the view, times the usual of the kind

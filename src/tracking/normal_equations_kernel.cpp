@@ -8,9 +8,6 @@ namespace {
 
 constexpr int kLanes = 16;
 
-// A pair agrees when its distance can be explained by noise. Pairs further apart still pull,
-// weakly.
-constexpr float kInlierSigmas = 3.0F;
 // Nothing nearer is seen.
 constexpr float kNear_m = 0.05F;
 
@@ -107,9 +104,11 @@ POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group
     const float distance2 = dx * dx + dy * dy + dz * dz;
     const float cosine = q.nx[l] * fx + q.ny[l] * fy + q.nz[l] * fz;
     const float candidate = depth > 0 ? q.inside[l] : 0.0F;
-    near[l] = distance2 < gates.max_distance * gates.max_distance ? candidate : 0.0F;
-    const float inlier = cosine > gates.min_cosine ? near[l] : 0.0F;
     const float sigma = gates.sensor.sigma(depth);
+    const float by_noise = kInlierSigmas * sigma;
+    const float most = by_noise < gates.max_distance ? gates.max_distance : by_noise;
+    near[l] = distance2 < most * most ? candidate : 0.0F;
+    const float inlier = cosine > gates.min_cosine ? near[l] : 0.0F;
     const float x2 = r * r / (sigma * sigma);
     const float root = 1.0F / (1.0F + x2 * inverse_scale2);
     weight[l] = inlier * root * root * p.weight[i + l] / (sigma * sigma);
@@ -122,7 +121,7 @@ POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group
     sums[kCostWeight][l] += candidate * p.weight[i + l];
     sums[kCandidates][l] += candidate;
     sums[kInliers][l] += agrees;
-    sums[kSeenThrough][l] += depth - q.z[l] > gates.max_distance ? candidate : 0.0F;
+    sums[kSeenThrough][l] += depth - q.z[l] > most ? candidate : 0.0F;
   }
   addTerm(q, q.nx, q.ny, q.nz, weight, residual, sums);
 }

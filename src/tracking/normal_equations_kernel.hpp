@@ -24,6 +24,11 @@ struct Motion {
   float t[3];
 };
 
+/// A pair agrees when its distance can be explained by noise: so many standard deviations of the
+/// measured depth. It may be farther apart than max_distance then. Pairs that do not agree still
+/// pull, weakly.
+constexpr float kInlierSigmas = 3.0F;
+
 struct Gates {
   float max_distance, min_cosine, robust_scale, inverse_photometric_sigma;
   float brightness_gain, brightness_offset;

@@ -27,7 +27,7 @@ struct DepthSensor {
   float systematic_m = 0.0F, systematic_1_m = 0.0026F;
 
   /// Depth that is used; frame.min_depth_m and frame.max_depth_m.
-  double min_depth_m = 0.3, max_depth_m = 5.0;
+  double min_depth_m = 0.3, max_depth_m = 8.0;
 
   /// Standard deviation (m) of a measurement of z (m).
   constexpr float sigma(float z_m) const {

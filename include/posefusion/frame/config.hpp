@@ -8,7 +8,7 @@ namespace pf {
 /// Settings of the working frame that tracking, map and segmentation share.
 struct FrameConfig {
   double min_depth_m = 0.3;
-  double max_depth_m = 5.0;
+  double max_depth_m = 8.0;
   int shrink = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "posefusion/core/camera.hpp"
@@ -26,6 +27,16 @@ void smoothDepth(const cv::Mat& depth_m, const DepthSensor& sensor, cv::Mat& smo
 /// or lies on another surface.
 void computeNormals(const cv::Mat& depth_m, const PinholeCamera& camera, const DepthSensor& sensor,
                     cv::Mat& normal_x, cv::Mat& normal_y, cv::Mat& normal_z);
+
+/// From where on (m) the normals of a smoothed image of this camera are off by more than 0.26 rad
+/// (15 degrees) by noise alone: its neighbouring pixels are too close to each other for their
+/// difference to show how the surface leans.
+float noisyNormalsFrom(const PinholeCamera& camera, const DepthSensor& sensor);
+
+/// Depth from `from_m` on takes its normals from a coarser image (`factor` pixels become one) where
+/// that has any.
+void takeCoarseNormals(const cv::Mat& depth_m, float from_m, const std::array<cv::Mat, 3>& coarse,
+                       int factor, const std::array<cv::Mat*, 3>& normals);
 
 /// Grey levels 0..255 (CV_32FC1) of an R G B image, each pixel the mean of a factor x factor block.
 void shrinkToIntensity(const cv::Mat& color, int factor, cv::Mat& intensity);
