@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <opencv2/core.hpp>
 
 #include "posefusion/frame/depth_filter.hpp"
+#include "posefusion/frame/working_frame.hpp"
 
 namespace pf {
 namespace {
@@ -125,6 +127,73 @@ TEST(ComputeNormals, AreMissingAtStepsHolesAndBorders) {
   EXPECT_EQ(z.at<float>(20, 21), 0);
   EXPECT_EQ(z.at<float>(0, 10), 0);
   EXPECT_LT(z.at<float>(30, 30), -0.99);
+}
+
+TEST(NoisyNormalsFrom, FollowsTheSensorAndTheSizeOfThePixels) {
+  PinholeCamera camera = smallCamera();
+  camera.fx = camera.fy = 262.5;  // a Kinect at 320x240
+  const float from_m = noisyNormalsFrom(camera, kKinect);
+  EXPECT_GT(from_m, 4.0F);
+  EXPECT_LT(from_m, 5.5F);
+  DepthSensor quiet = kKinect;
+  quiet.axial_1_m /= 10;
+  EXPECT_GT(noisyNormalsFrom(camera, quiet), 15.0F);
+  camera.fx = camera.fy = 525.0;
+  EXPECT_LT(noisyNormalsFrom(camera, kKinect), 0.8F * from_m);
+}
+
+TEST(TakeCoarseNormals, FarAwayWhereThereAreAny) {
+  const cv::Mat depth = (cv::Mat_<float>(2, 4) << 1, 6, 6, 6, 1, 6, 6, 0);
+  const std::array<cv::Mat, 3> coarse = {(cv::Mat_<float>(1, 2) << 0.6F, 0.0F),
+                                         (cv::Mat_<float>(1, 2) << 0.0F, 0.0F),
+                                         (cv::Mat_<float>(1, 2) << -0.8F, 0.0F)};
+  std::array<cv::Mat, 3> fine = {cv::Mat::zeros(2, 4, CV_32FC1), cv::Mat::zeros(2, 4, CV_32FC1),
+                                 cv::Mat(2, 4, CV_32FC1, cv::Scalar(-1.0F))};
+  takeCoarseNormals(depth, 5.0F, coarse, 2, {&fine[0], &fine[1], &fine[2]});
+  const cv::Mat x = (cv::Mat_<float>(2, 4) << 0, 0.6F, 0, 0, 0, 0.6F, 0, 0);
+  const cv::Mat z = (cv::Mat_<float>(2, 4) << -1, -0.8F, -1, -1, -1, -0.8F, -1, -1);
+  EXPECT_EQ(cv::norm(fine[0], x, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::countNonZero(fine[1]), 0);
+  EXPECT_EQ(cv::norm(fine[2], z, cv::NORM_INF), 0);
+}
+
+TEST(WorkingFrame, FarNormalsAreThoseOfTheWallNotOfTheNoise) {
+  PinholeCamera camera = smallCamera();
+  camera.fx = camera.fy = 262.5;
+  const Eigen::Vector3d n = Eigen::Vector3d(0.3, 0.0, 1.0).normalized();
+  const auto turned = [&](double offset_m) {  // share of normals off by more than 0.7 rad
+    RgbdFrame frame;
+    frame.camera = camera;
+    frame.color = cv::Mat(camera.height, camera.width, CV_8UC3, cv::Scalar(90, 90, 90));
+    frame.depth = planeDepth(camera, n, offset_m);
+    frame.depth_unit_m = 1.0;
+    cv::RNG random(7);
+    for (int v = 0; v < frame.depth.rows; ++v) {
+      for (int u = 0; u < frame.depth.cols; ++u) {
+        float& z = frame.depth.at<float>(v, u);
+        z += static_cast<float>(random.gaussian(kKinect.sigma(z)));
+      }
+    }
+    FrameConfig config;
+    config.shrink = 1;
+    WorkingFrame working;
+    working.assign(frame, {}, config);
+    int count = 0, off = 0;
+    const FrameLevel& level = working.levels[0];
+    for (int v = 4; v < camera.height - 4; ++v) {
+      for (int u = 4; u < camera.width - 4; ++u) {
+        const Eigen::Vector3d seen(level.normal_x.at<float>(v, u), level.normal_y.at<float>(v, u),
+                                   level.normal_z.at<float>(v, u));
+        if (seen.isZero()) continue;
+        ++count;
+        off += -seen.dot(n) < std::cos(0.7) ? 1 : 0;
+      }
+    }
+    EXPECT_GT(count, 2000);
+    return static_cast<double>(off) / count;
+  };
+  EXPECT_LT(turned(3.0), 0.02);
+  EXPECT_LT(turned(6.5), 0.05);
 }
 
 TEST(DepthFilter, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -97,6 +97,7 @@ TEST(FieldEstimate, depthNearTheEndOfTheRangeIsIgnored) {
   CalibrationView view;
   view.camera = test::roomCamera();
   view.depth_mm = cv::Mat(view.camera.height, view.camera.width, CV_16UC1, cv::Scalar(4940));
+  view.sensor.max_depth_m = 5.0;
   EXPECT_TRUE(ViewSurface(view).patches().empty());
   view.sensor.max_depth_m = 8.0;
   EXPECT_FALSE(ViewSurface(view).patches().empty());

@@ -92,7 +92,7 @@ TEST_F(MapperTest, TheFarWallsOfAHallAgreeWithTheMap) {
           "objects:\n"
           "  - {kind: shelf, at_m: [8.0, 2.2], yaw_deg: 180, seed: 1}\n"
           "  - {kind: cabinet, at_m: [7.2, 0.25], yaw_deg: 90, size_m: [0.45, 0.9, 0.9]}\n"),
-      20);
+      5);
   Mapper mapper(config());
   for (int i = 0; i < hall.frameCount(); ++i) {
     TrueFrame seen = hall.frame(i);

@@ -190,6 +190,22 @@ TEST(NormalEquations, OfNothingAreZero) {
   EXPECT_EQ(sums.hessian().norm(), 0);
 }
 
+TEST(NormalEquations, WhatTheSensorMayBeOffByIsNoOtherSurface) {
+  Scene scene;
+  TermSettings settings;
+  settings.photometric_sigma = 0.0F;
+  Eigen::Isometry3d nearer = Eigen::Isometry3d::Identity();
+  nearer.translation().z() = -1.2 * settings.max_distance_m;  // the model comes before the frame
+  const auto summed = [&] {
+    return buildNormalEquations(scene.model, scene.frame, nearer, settings);
+  };
+  EXPECT_EQ(summed().inliers, 0);
+  EXPECT_GT(summed().seen_through, 0.9 * summed().candidates);
+  settings.sensor.axial_m = settings.max_distance_m;  // as noisy as that
+  EXPECT_GT(summed().inliers, 0.9 * summed().candidates);
+  EXPECT_EQ(summed().seen_through, 0);
+}
+
 TEST(NormalEquations, DoNotListenToHolesInTheFrame) {
   Scene scene;
   scene.frame.depth_m.setTo(0);

@@ -150,7 +150,7 @@ TEST(SimulatorScenario, MistakesAreNamedWithTheirPlace) {
   EXPECT_TRUE(contains(loadError(kRoom + "fps: 9\nfps: 8"), "scene.yaml: fps is given twice"));
   EXPECT_TRUE(contains(loadError(kRoom + "seed: 1.5"), "seed is 1.5, expected a whole number"));
   EXPECT_TRUE(contains(loadError(kRoom + "duration_s: 0"), "duration_s is 0, expected 0.05 to"));
-  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 6}"), "depth.min_m"));
+  EXPECT_TRUE(contains(loadError(kRoom + "depth: {min_m: 9}"), "depth.min_m"));
   EXPECT_TRUE(contains(loadError("rooms: [{walls: fur}]"), "rooms[0].walls is 'fur'"));
   const std::string robot = "camera: {motion: robot, waypoints: [[1, 1], [3, 1]], ";
   EXPECT_TRUE(contains(loadError(kRoom + robot + "falls: [{at_s: 9}, {at_s: 3}]}"),

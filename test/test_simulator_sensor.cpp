@@ -93,7 +93,7 @@ TEST(SimulatorDepth, SystematicErrorsAreThoseOfTheCameraNotOfTheFrame) {
 
 TEST(SimulatorDepth, RangeDarkGrazingAndShinySurfacesHaveNoDepth) {
   EXPECT_EQ(cv::countNonZero(sense(wall(0.3F), {})), 0);
-  EXPECT_EQ(cv::countNonZero(sense(wall(6.0F), {})), 0);
+  EXPECT_EQ(cv::countNonZero(sense(wall(9.0F), {})), 0);
   EXPECT_LT(cv::countNonZero(sense(wall(2.0F, 0.05F), {})), 0.2 * 640 * 480);
   DepthView dark = wall(3.0F);
   dark.infrared = 0.02F;

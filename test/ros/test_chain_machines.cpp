@@ -88,6 +88,7 @@ TEST(ChainMachines, ThePackerKeepsItsRateAndNamesWhatDoesNotFit) {
   ASSERT_TRUE(sender.load());
   for (int i = 0; i < 31; ++i) sender.send(room(i));  // a second of 30 Hz
   ASSERT_TRUE(diagnostics.waitFor("packer", "given up: paused", "15"));
+  ASSERT_TRUE(sender.waitFor(16));  // the count may be here before the last of them
   EXPECT_EQ(sender.heard().size(), 16U);
   auto wrong = room(32);
   wrong.color->encoding = "cmyk8";
