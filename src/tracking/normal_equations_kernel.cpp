@@ -105,8 +105,7 @@ POSEFUSION_INLINE void geometricTerm(const Points& p, std::size_t i, const Group
     const float cosine = q.nx[l] * fx + q.ny[l] * fy + q.nz[l] * fz;
     const float candidate = depth > 0 ? q.inside[l] : 0.0F;
     const float sigma = gates.sensor.sigma(depth);
-    const float by_noise = kInlierSigmas * sigma;
-    const float most = by_noise < gates.max_distance ? gates.max_distance : by_noise;
+    const float most = mostApart(gates.max_distance, sigma);
     near[l] = distance2 < most * most ? candidate : 0.0F;
     const float inlier = cosine > gates.min_cosine ? near[l] : 0.0F;
     const float x2 = r * r / (sigma * sigma);

@@ -25,9 +25,14 @@ struct Motion {
 };
 
 /// A pair agrees when its distance can be explained by noise: so many standard deviations of the
-/// measured depth. It may be farther apart than max_distance then. Pairs that do not agree still
-/// pull, weakly.
+/// measured depth. Pairs that do not agree still pull, weakly.
 constexpr float kInlierSigmas = 3.0F;
+
+/// The two points of a pair are not farther apart than this (m); `sigma` (m): of the depth.
+constexpr float mostApart(float max_distance, float sigma) {
+  const float by_noise = kInlierSigmas * sigma;
+  return by_noise < max_distance ? max_distance : by_noise;
+}
 
 struct Gates {
   float max_distance, min_cosine, robust_scale, inverse_photometric_sigma;

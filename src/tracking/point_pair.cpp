@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_pair.hpp"
 
-#include <algorithm>
-
 #include "normal_equations_kernel.hpp"
 
 namespace pf {
@@ -26,8 +24,8 @@ bool findPair(const ModelPoints& model, std::size_t i, const FrameLevel& frame,
   const double depth = frame.depth_m.at<float>(pair.v, pair.u);
   if (depth <= 0) return false;
   pair.p = frame.camera.unproject(pair.u, pair.v, depth);
-  const float by_noise = kernel::kInlierSigmas * settings.sensor.sigma(static_cast<float>(depth));
-  return (pair.q - pair.p).norm() < std::max(settings.max_distance_m, by_noise);
+  const float sigma = settings.sensor.sigma(static_cast<float>(depth));
+  return (pair.q - pair.p).norm() < kernel::mostApart(settings.max_distance_m, sigma);
 }
 
 }  // namespace pf
