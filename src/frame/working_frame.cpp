@@ -40,6 +40,7 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   sensor.min_depth_m = config.min_depth_m;
   sensor.max_depth_m = config.max_depth_m;
   full_camera = frame.camera;
+  full_color = frame.color;
   const int shrink = shrinkFor(config, frame.camera.fx);
   camera = frame.camera.shrunk(shrink);
   const cv::Size size(camera.width, camera.height);
@@ -82,6 +83,7 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
 
 WorkingFrame WorkingFrame::clone() const {
   WorkingFrame copy = *this;
+  copy.full_color = cv::Mat();
   for (cv::Mat* image :
        {&copy.depth_m, &copy.beyond_m, &copy.color, &copy.full_depth_m, &copy.smooth_m_}) {
     *image = image->clone();

@@ -127,7 +127,8 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
                    const FusionOptions& options, SurfelMap& map, FusionCounts& counts) {
   Scratch& s = *scratch_;
   findFreeSpace(frame, s.seen_m, s.evidence.free_m);
-  s.evidence.explained.assign(frame.depth_m.total(), kUnexplained);
+  s.evidence.measured.assign(frame, map.config().shrink);
+  s.evidence.explained.clear(s.evidence.measured);
   s.evidence.known_behind.assign(frame.depth_m.size());
   s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
                             reachOf(frame.sensor, s.seen_m, s.people_m, s.evidence.person_m));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "insertion.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "measurement.hpp"
 #include "posefusion/core/parallel.hpp"
@@ -10,60 +12,90 @@
 namespace pf {
 namespace {
 
-bool isWanted(const WorkingFrame& frame, const Evidence& evidence, int u, int v) {
-  return evidence.explained[v * frame.camera.width + u] == kUnexplained &&
-         frame.depth_m.at<float>(v, u) > 0 && frame.levels[0].normal_z.at<float>(v, u) < 0;
+/// A pixel that no surfel explains, of a surface that its level is to show.
+struct Wanted {
+  int u, v;                  // of the level
+  int working_u, working_v;  // of the working frame
+  float z;                   // m
+  Eigen::Vector3f n;
+};
+
+/// Calls visit(wanted) for each pixel of a level's row that wants a surfel.
+template <typename Visit>
+void forEachWanted(const Evidence& evidence, int index, int v, const cv::Size& working,
+                   const Visit& visit) {
+  const MeasuredSurface::Level& level = evidence.measured[index];
+  const std::int64_t* explained = evidence.explained.at(level.at(0, v));
+  const auto* depth = level.depth_m.ptr<float>(v);
+  const auto inWorking = [&](int pixel, int size) {
+    return std::min(static_cast<int>((static_cast<float>(pixel) + 0.5F) / level.scale), size - 1);
+  };
+  const int working_v = inWorking(v, working.height);
+  for (int u = 0; u < level.depth_m.cols; ++u) {
+    if (explained[u] != kUnexplained || !(depth[u] > 0)) continue;
+    if (evidence.measured.levelOf(depth[u]) != index) continue;
+    const int working_u = inWorking(u, working.width);
+    const Eigen::Vector3f n = evidence.measured.normal(working_u, working_v, depth[u]);
+    if (n.z() < 0) visit(Wanted{u, v, working_u, working_v, depth[u], n});
+  }
 }
 
-/// Writes the surfel of pixel (u, v) at place i.
-void writeSurfel(const WorkingFrame& frame, const RigidMotion& to_map, const FusionOptions& options,
-                 int u, int v, std::size_t i, SurfelArrays& s) {
-  const float z = frame.depth_m.at<float>(v, u);
-  const auto fx = static_cast<float>(frame.camera.fx), fy = static_cast<float>(frame.camera.fy);
-  const float x = (static_cast<float>(u) - static_cast<float>(frame.camera.cx)) / fx * z;
-  const float y = (static_cast<float>(v) - static_cast<float>(frame.camera.cy)) / fy * z;
-  const FrameLevel& level = frame.levels[0];
-  const float nx = level.normal_x.at<float>(v, u), ny = level.normal_y.at<float>(v, u);
-  const float nz = level.normal_z.at<float>(v, u);
-  to_map.point(x, y, z, s.x[i], s.y[i], s.z[i]);
-  to_map.direction(nx, ny, nz, s.nx[i], s.ny[i], s.nz[i]);
-  const auto& color = frame.color.at<cv::Vec3b>(v, u);
+/// Writes the surfel of a pixel at place i.
+void writeSurfel(const Wanted& w, const MeasuredSurface::Level& level, const RigidMotion& to_map,
+                 const WorkingFrame& frame, const FusionOptions& options, std::size_t i,
+                 SurfelArrays& s) {
+  const float x = level.rayX(w.u) * w.z, y = level.rayY(w.v) * w.z;
+  to_map.point(x, y, w.z, s.x[i], s.y[i], s.z[i]);
+  to_map.direction(w.n.x(), w.n.y(), w.n.z(), s.nx[i], s.ny[i], s.nz[i]);
+  const cv::Vec3b& color = level.color.ptr<cv::Vec3b>(w.v)[w.u];
   s.r[i] = exposed(color[0], options);
   s.g[i] = exposed(color[1], options);
   s.b[i] = exposed(color[2], options);
-  const float cosine = -(nx * x + ny * y + nz * z) / std::sqrt(x * x + y * y + z * z);
-  s.radius[i] = footprintRadius(z, fx, cosine);
-  s.weight[i] = measurementWeight(frame.sensor, z);
+  const float cosine =
+      -(w.n.x() * x + w.n.y() * y + w.n.z() * w.z) / std::sqrt(x * x + y * y + w.z * w.z);
+  s.radius[i] = footprintRadius(w.z, level.fx, cosine);
+  s.weight[i] = measurementWeight(frame.sensor, w.z);
   s.odds[i] = static_odds::supported(0.0F, frame.pace.worth());
 }
+
+/// A row of pixels of one level.
+struct Row {
+  int level, v;
+};
 
 }  // namespace
 
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now, const Evidence& evidence,
                           SurfelArrays& surfels) {
-  const int rows = frame.camera.height, cols = frame.camera.width;
-  std::vector<std::size_t> row_start(rows + 1, 0);
-  parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < cols; ++u) row_start[v + 1] += isWanted(frame, evidence, u, v) ? 1 : 0;
+  std::vector<Row> rows;
+  for (int i = 0; i < evidence.measured.levels(); ++i) {
+    for (int v = 0; v < evidence.measured[i].depth_m.rows; ++v) rows.push_back({i, v});
+  }
+  const cv::Size working = frame.depth_m.size();
+  std::vector<std::size_t> row_start(rows.size() + 1, 0);
+  parallelFor(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      forEachWanted(evidence, rows[k].level, rows[k].v, working,
+                    [&](const Wanted&) { ++row_start[k + 1]; });
     }
   });
-  for (int v = 0; v < rows; ++v) row_start[v + 1] += row_start[v];
-  surfels.resize(row_start[rows]);
-  surfels.created.assign(row_start[rows], now);
-  surfels.seen.assign(row_start[rows], now);
+  for (std::size_t k = 0; k < rows.size(); ++k) row_start[k + 1] += row_start[k];
+  surfels.resize(row_start.back());
+  surfels.created.assign(row_start.back(), now);
+  surfels.seen.assign(row_start.back(), now);
   const RigidMotion to_map(T_map_camera);
-  parallelFor(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      std::size_t next = row_start[v];
-      for (int u = 0; u < cols; ++u) {
-        if (isWanted(frame, evidence, u, v)) {
-          writeSurfel(frame, to_map, options, u, v, next, surfels);
-          if (evidence.known_behind.has(u, v)) surfels.odds[next] += static_odds::kNewcomer;
-          ++next;
+  parallelFor(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      std::size_t next = row_start[k];
+      const MeasuredSurface::Level& level = evidence.measured[rows[k].level];
+      forEachWanted(evidence, rows[k].level, rows[k].v, working, [&](const Wanted& w) {
+        writeSurfel(w, level, to_map, frame, options, next, surfels);
+        if (evidence.known_behind.has(w.working_u, w.working_v)) {
+          surfels.odds[next] += static_odds::kNewcomer;
         }
-      }
+        ++next;
+      });
     }
   });
 }

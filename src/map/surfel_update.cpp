@@ -30,6 +30,8 @@ constexpr float kSeenFarThrough = 2;
 constexpr float kMinCosine = 0.2F;
 // What lies this far in front of a stable surface may have come there.
 constexpr float kWellBefore_m = 0.25F;
+// A disc explains the pixels whose rays meet it well inside, and no more than a few.
+constexpr float kExplainedShare = 0.9F, kMostExplained_px = 6.0F;
 
 }  // namespace
 
@@ -53,29 +55,57 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
   result.stable_too = static_cast<int>(range.block) % kTurns == map_.frame() % kTurns;
   ProjectedRange seen;
   project(s, range, projection_, seen);
-  const float right = projection_.width - 0.5F, bottom = projection_.height - 0.5F;
-  for (std::uint32_t k = 0; k < range.end - range.begin; ++k) {
-    const float u = seen.u[k], v = seen.v[k];
-    if (seen.inside[k] == 0 || !(u > -0.5F && v > -0.5F && u < right && v < bottom)) continue;
-    const std::size_t i = range.begin + k;
-    if (!map_.isActive(s, i) || map_.isDead(s, i)) continue;
-    const Place place{seen.x[k],
-                      seen.y[k],
-                      seen.z[k],
-                      u,
-                      v,
-                      static_cast<int>(u + 0.5F),
-                      static_cast<int>(v + 0.5F),
-                      seen.reach[k],
-                      seen.facing[k]};
-    if (!updateOne(s, i, place, result)) {
-      doubt(s, i, place);
-      continue;
+  Places places;
+  for (std::uint32_t next = 0; next < range.end - range.begin;) {
+    const std::size_t count = findPlaces(s, range, seen, next, places);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = places[k].surfel;
+      if (!updateOne(s, i, places[k], result)) {
+        doubt(s, i, places[k]);
+        continue;
+      }
+      ++result.merged;
+      result.moved.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
     }
-    ++result.merged;
-    result.moved.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
   }
   return result;
+}
+
+/// The next surfels of a range that are in view, from number `next` on. What is measured there is
+/// on its way from memory when they are updated.
+std::size_t SurfelUpdate::findPlaces(const SurfelArrays& s, const SurfelRange& range,
+                                     const ProjectedRange& seen, std::uint32_t& next,
+                                     Places& places) const {
+  const MeasuredSurface& surface = evidence_.measured;
+  const float right = projection_.width - 0.5F, bottom = projection_.height - 0.5F;
+  std::size_t count = 0;
+  for (; next < range.end - range.begin && count < kBatch; ++next) {
+    const float u = seen.u[next], v = seen.v[next], z = seen.z[next];
+    if (seen.inside[next] == 0 || !(u > -0.5F && v > -0.5F && u < right && v < bottom)) continue;
+    const std::uint32_t i = range.begin + next;
+    if (!map_.isActive(s, i) || map_.isDead(s, i)) continue;
+    const MeasuredSurface::Level& level = surface[surface.levelOf(z)];
+    // Half a pixel outside the working frame is outside of all levels: never below 0.
+    const int lu = std::min(static_cast<int>((u + 0.5F) * level.scale), level.depth_m.cols - 1);
+    const int lv = std::min(static_cast<int>((v + 0.5F) * level.scale), level.depth_m.rows - 1);
+    __builtin_prefetch(level.depth_m.ptr<float>(lv) + lu);
+    __builtin_prefetch(level.color.ptr<cv::Vec3b>(lv) + lu);
+    __builtin_prefetch(evidence_.explained.at(level.at(lu, lv)), 1);
+    places[count++] = {seen.x[next],
+                       seen.y[next],
+                       z,
+                       u,
+                       v,
+                       static_cast<int>(u + 0.5F),
+                       static_cast<int>(v + 0.5F),
+                       seen.reach[next],
+                       seen.facing[next],
+                       i,
+                       &level,
+                       lu,
+                       lv};
+  }
+  return count;
 }
 
 /// True when this frame supports the surfel.
@@ -93,19 +123,18 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
     contradictOne(s, i, isFarFromRims(p, beyond_m) ? kSeenFarThrough : 1.0F);
     return false;
   }
-  if (frame_.depth_m.at<float>(p.v, p.u) <= 0) return false;
-  const float measured = depthOnRay(p);
-  const float off = std::abs(measured - p.z);
-  if (p.z - measured > kWellBefore_m && map_.isStable(s, i)) evidence_.known_behind.mark(p.u, p.v);
+  const Measurement m = measure(p);
+  if (m.depth <= 0) return false;
+  const float off = std::abs(m.depth - p.z);
+  if (p.z - m.depth > kWellBefore_m && map_.isStable(s, i)) evidence_.known_behind.mark(p.u, p.v);
   if (off > std::max(tolerance, kLayer_m)) return false;
-  const Eigen::Vector3f n = normal(p.u, p.v);
   Eigen::Vector3f own;
   to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], own.x(), own.y(), own.z());
-  const float cosine = n.dot(own);
+  const float cosine = m.n.dot(own);
   if (off > tolerance) {
-    if (isLayer(p, measured, cosine)) {
+    if (isLayer(p, m.depth, cosine)) {
       result.layers.push_back({static_cast<std::uint32_t>(i),
-                               static_cast<std::uint32_t>(p.v * frame_.camera.width + p.u)});
+                               static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v))});
     }
     return false;
   }
@@ -117,7 +146,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   if (!stable || (result.stable_too && s.created[i] >= another_pass_)) {
     result.supported.push_back(supportedAt(s, i, p));
   }
-  merge(s, i, p, measured, n, cosine);
+  merge(s, i, p, m, cosine);
   return true;
 }
 
@@ -151,8 +180,8 @@ SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, std::si
                                                   const Place& p) const {
   const float cosine = p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   return {static_cast<std::uint32_t>(i),
-          static_cast<std::uint32_t>(p.v * frame_.camera.width + p.u), p.z, std::abs(cosine),
-          std::max(s.radius[i], p.z / projection_.fx)};
+          static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v)), p.z, std::abs(cosine),
+          std::max(s.radius[i], p.z / p.level->fx)};
 }
 
 void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
@@ -185,65 +214,55 @@ void SurfelUpdate::contradictOne(SurfelArrays& s, std::size_t i, float frames) c
   s.odds[i] = static_odds::contradicted(s.odds[i], worth_ * frames);
 }
 
-Eigen::Vector3f SurfelUpdate::normal(int u, int v) const {
-  const FrameLevel& level = frame_.levels[0];
-  return {level.normal_x.at<float>(v, u), level.normal_y.at<float>(v, u),
-          level.normal_z.at<float>(v, u)};
-}
-
-/// Depth where the surfel's ray meets the plane measured at the pixel next to it; the pixel's own
-/// depth where it has no normal. Without this a leaning surface would gain up to half a pixel's
-/// slope with each merge.
-float SurfelUpdate::depthOnRay(const Place& p) const {
-  const float depth = frame_.depth_m.at<float>(p.v, p.u);
-  const Eigen::Vector3f n = normal(p.u, p.v);
-  const Eigen::Vector3f pixel_ray((static_cast<float>(p.u) - projection_.cx) / projection_.fx,
-                                  (static_cast<float>(p.v) - projection_.cy) / projection_.fy,
-                                  1.0F);
+/// Its depth is where the surfel's ray meets the plane measured at the pixel next to it; the
+/// pixel's own depth where that has no normal. Without this a leaning surface would gain up to half
+/// a pixel's slope with each merge.
+SurfelUpdate::Measurement SurfelUpdate::measure(const Place& p) const {
+  const MeasuredSurface::Level& level = *p.level;
+  const float depth = level.depth_m.ptr<float>(p.level_v)[p.level_u];
+  if (depth <= 0) return {0.0F, Eigen::Vector3f::Zero()};
+  const Eigen::Vector3f n = evidence_.measured.normal(p.u, p.v, depth);
   const float cosine = n.dot(Eigen::Vector3f(p.x / p.z, p.y / p.z, 1.0F));
-  if (cosine > -kMinCosine) return depth;
-  return depth * n.dot(pixel_ray) / cosine;
+  if (cosine > -kMinCosine) return {depth, n};
+  const Eigen::Vector3f pixel_ray(level.rayX(p.level_u), level.rayY(p.level_v), 1.0F);
+  return {depth * n.dot(pixel_ray) / cosine, n};
 }
 
+/// On all levels on which a pixel that agrees with the surfel may be looked for.
 void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
-  const float reach = std::max(0.5F, std::min(0.9F * p.reach_px, 6.0F));
-  const int first_u = std::max(0, static_cast<int>(std::ceil(p.fu - reach)));
-  const int last_u = std::min(frame_.camera.width - 1, static_cast<int>(std::floor(p.fu + reach)));
-  const int first_v = std::max(0, static_cast<int>(std::ceil(p.fv - reach)));
-  const int last_v = std::min(frame_.camera.height - 1, static_cast<int>(std::floor(p.fv + reach)));
-  const std::int64_t mine = Explanation::of(made, p.z);
-  for (int v = first_v; v <= last_v; ++v) {
-    for (int u = first_u; u <= last_u; ++u) {
-      // Several threads may meet here; whichever comes first, the smallest number stays.
-      std::int64_t* pixel = &evidence_.explained[v * frame_.camera.width + u];
-      std::int64_t old = __atomic_load_n(pixel, __ATOMIC_RELAXED);
-      while (mine < old && !__atomic_compare_exchange_n(pixel, &old, mine, true, __ATOMIC_RELAXED,
-                                                        __ATOMIC_RELAXED)) {
-      }
-    }
+  const MeasuredSurface& surface = evidence_.measured;
+  const float tolerance = agreement(p.z);
+  const std::int64_t by = Explanation::of(made, p.z);
+  const int near = surface.levelOf(p.z - tolerance), far = surface.levelOf(p.z + tolerance);
+  for (int i = std::min(near, far); i <= std::max(near, far); ++i) {
+    const float scale = surface[i].scale;
+    const float reach =
+        std::max(0.5F, std::min(kExplainedShare * p.reach_px * scale, kMostExplained_px));
+    evidence_.explained.offer(surface[i], (p.fu + 0.5F) * scale - 0.5F,
+                              (p.fv + 0.5F) * scale - 0.5F, reach, by);
   }
 }
 
 /// Running weighted mean of depth along the pixel's ray, normal, colour and radius.
-void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
-                         const Eigen::Vector3f& n, float cosine) const {
+void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, const Measurement& m,
+                         float cosine) const {
   s.seen[i] = map_.frame();
   s.odds[i] = static_odds::supported(s.odds[i], worth_);
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (cosine < min_cosine_ || facing < kMinCosine) return;
-  const float gain = measurementWeight(frame_.sensor, measured);
+  const float gain = measurementWeight(frame_.sensor, m.depth);
   const float old = std::min(s.weight[i], max_weight_);
   const float share = gain / (old + gain);
   s.weight[i] = old + gain;
-  const float scale = 1.0F + share * (measured - p.z) / p.z;
+  const float scale = 1.0F + share * (m.depth - p.z) / p.z;
   to_map_.point(p.x * scale, p.y * scale, p.z * scale, s.x[i], s.y[i], s.z[i]);
-  mergeNormal(s, i, share, n);
-  const auto& color = frame_.color.at<cv::Vec3b>(p.v, p.u);
+  mergeNormal(s, i, share, m.n);
+  const cv::Vec3b& color = p.level->color.ptr<cv::Vec3b>(p.level_v)[p.level_u];
   s.r[i] += share * (exposed(color[0], options_) - s.r[i]);
   s.g[i] += share * (exposed(color[1], options_) - s.g[i]);
   s.b[i] += share * (exposed(color[2], options_) - s.b[i]);
   // A closer look makes it finer, never coarser.
-  const float radius = footprintRadius(measured, projection_.fx, facing);
+  const float radius = footprintRadius(m.depth, p.level->fx, facing);
   if (radius < s.radius[i]) s.radius[i] += share * (radius - s.radius[i]);
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "explained.hpp"
 #include "known_behind.hpp"
+#include "measured_surface.hpp"
 #include "near_people.hpp"
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/frame/working_frame.hpp"
@@ -16,35 +18,13 @@
 
 namespace pf {
 
-/// What agrees with the measurement of a pixel: of the oldest stable surfel that does, the nearest.
-/// In one number, so that threads may look for the least.
-class Explanation {
- public:
-  /// `made`: the frame in which a surfel was made; z: its depth (m).
-  static std::int64_t of(std::int32_t made, float z) {
-    return (static_cast<std::int64_t>(made) << 32) | static_cast<std::int64_t>(z * kSteps_1_m);
-  }
-  static std::int32_t made(std::int64_t explanation) {
-    return static_cast<std::int32_t>(explanation >> 32);
-  }
-  static float depth(std::int64_t explanation) {
-    return static_cast<float>(explanation & 0xFFFFFFFF) / kSteps_1_m;
-  }
-
- private:
-  static constexpr float kSteps_1_m = 1e4F;
-};
-
-/// Says of a pixel that no surfel agrees with it.
-constexpr std::int64_t kUnexplained = std::numeric_limits<std::int64_t>::max();
-
 /// Evidence of a frame on the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
+  MeasuredSurface measured;
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
   cv::Mat person_m;  ///< CV_32FC1: depth of a person in the map, 0 = none; may be empty
   NearPeople near_people;  ///< around all people in view
-  /// Per pixel an Explanation; one made in this frame where only unstable surfels agree.
-  std::vector<std::int64_t> explained;
+  Explained explained;
   KnownBehind known_behind;
 };
 
@@ -58,7 +38,7 @@ class SurfelUpdate {
 
   /// A surfel close to the measured surface, parallel to it, and yet no part of it.
   struct Layer {
-    std::uint32_t surfel, pixel;
+    std::uint32_t surfel, pixel;  ///< of those of all levels
   };
   /// A surfel that the measurement supports, as the camera sees it.
   struct Supported {
@@ -84,27 +64,37 @@ class SurfelUpdate {
   /// A surfel in the camera frame.
   struct Place {
     float x, y, z;
-    float fu, fv;    ///< pixel
+    float fu, fv;    ///< pixel of the working frame
     int u, v;        ///< the same, rounded
     float reach_px;  ///< radius
     float facing;    ///< normal . (x, y, z): above 0 it is seen from behind
+    std::uint32_t surfel;
+    const MeasuredSurface::Level* level;  ///< that shows a surface at its distance
+    int level_u, level_v;                 ///< pixel of it
   };
+  static constexpr std::size_t kBatch = 64;
+  using Places = std::array<Place, kBatch>;
+  /// What the frame measures there.
+  struct Measurement {
+    float depth;        ///< m, on the surfel's ray; 0: nothing
+    Eigen::Vector3f n;  ///< normal; 0 where there is none
+  };
+  std::size_t findPlaces(const SurfelArrays& s, const SurfelRange& range,
+                         const ProjectedRange& seen, std::uint32_t& next, Places& places) const;
   bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
-  /// Depths closer than this (m) measure the same surface.
-  float agreement(float z) const { return frame_.sensor.tolerance(z, 5.0F); }
+  float agreement(float z) const { return evidence_.measured.agreement(z); }
   bool isLayer(const Place& p, float measured, float cosine) const;
   bool isFarFromRims(const Place& p, float beyond_m) const;
   void doubt(SurfelArrays& s, std::size_t i, const Place& p) const;
   /// By so many frames like this one.
   void contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;
-  float depthOnRay(const Place& p) const;
+  Measurement measure(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;
   Supported supportedAt(const SurfelArrays& s, std::size_t i, const Place& p) const;
   bool isDoubled(const Supported& seen, std::int32_t before) const;
-  void merge(SurfelArrays& s, std::size_t i, const Place& p, float measured,
-             const Eigen::Vector3f& n, float cosine) const;
+  void merge(SurfelArrays& s, std::size_t i, const Place& p, const Measurement& m,
+             float cosine) const;
   void mergeNormal(SurfelArrays& s, std::size_t i, float share, const Eigen::Vector3f& n) const;
-  Eigen::Vector3f normal(int u, int v) const;
 
   const WorkingFrame& frame_;
   const FusionOptions& options_;

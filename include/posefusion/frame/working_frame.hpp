@@ -33,6 +33,7 @@ struct WorkingFrame {
   int valid_pixels = 0;                    ///< of depth_m
   PinholeCamera full_camera;
   cv::Mat full_depth_m;  ///< CV_32FC1, full size, 0 = invalid
+  cv::Mat full_color;    ///< CV_8UC3 R G B, full size: the frame's own, valid as long as that is
   Pace pace;             ///< of the frames; assign() leaves it
 
   /// Prepares everything from a frame; `mask` (255 = person) may be empty. The range is that of
@@ -40,7 +41,7 @@ struct WorkingFrame {
   void assign(const RgbdFrame& frame, const cv::Mat& mask, const FrameConfig& config,
               const DepthSensor& taken_by = {});
 
-  /// A copy that shares no memory with this one.
+  /// A copy that shares no memory with this one, without full_color.
   WorkingFrame clone() const;
 
  private:

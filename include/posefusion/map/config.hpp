@@ -7,6 +7,7 @@ namespace pf {
 
 /// Settings of the surfel map.
 struct MapConfig {
+  int shrink = 1;
   double stable_probability = 0.76;
   double max_normal_angle_rad = 0.8;
   double max_weight = 8.0;
@@ -16,6 +17,9 @@ struct MapConfig {
 };
 
 inline void visitFields(MapConfig& c, FieldVisitor& v) {
+  v.integer("shrink", c.shrink, 1, 8,
+            "near surfaces are mapped in images shrunk by this factor, farther ones in images "
+            "halved until a pixel is as wide as half the standard deviation of its depth");
   v.number(
       "stable_probability", c.stable_probability, 0.0, 0.96,
       "a surfel that stands still with this probability is stable (0.27 s of views that agree "
