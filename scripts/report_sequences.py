@@ -11,6 +11,14 @@ from bench_runs import ROOT, Runs
 DEFAULT = ("walking_static", "walking_xyz", "walking_halfsphere", "walking_rpy", "hrpslam1", "hrpslam2")
 LONG_ARGUMENTS = ("--set", "fps=15")  # as scripts/bench --long makes the two of a quarter of an hour
 LONG = ("hrpslam1", "hrpslam2")
+# Scenarios in which it decides whether people are removed, and the word that stands for all of them.
+HARD_PEOPLE = ("people_cover", "people_along", "people_approach", "people_bare_wall", "people_wait")
+GROUPS = {"hard_people": HARD_PEOPLE}
+
+
+def expanded(words):
+    """Names of groups replaced by what they stand for."""
+    return [name for word in words for name in GROUPS.get(word, (word,))]
 
 
 @dataclasses.dataclass

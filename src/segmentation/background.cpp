@@ -34,29 +34,34 @@ Background comparePoint(const ModelView& view, const DepthSensor& sensor,
                         const Projection& projection, const Eigen::Vector3f& point, int reach_px) {
   const Eigen::Vector3f q = projection.rotation * point + projection.translation;
   if (q.z() <= kMinDepth_m) return Background::unknown;
-  const int u = static_cast<int>(std::lround(projection.fx * q.x() / q.z() + projection.cx));
-  const int v = static_cast<int>(std::lround(projection.fy * q.y() / q.z() + projection.cy));
+  const float inverse_z = 1.0F / q.z();
+  const int u = cvRound(projection.fx * q.x() * inverse_z + projection.cx);
+  const int v = cvRound(projection.fy * q.y() * inverse_z + projection.cy);
   const cv::Mat& depth_m = view.depth_m;
   const float tolerance = depthTolerance(sensor, q.z());
+  const auto isNear = [&](float model) { return std::abs(model - q.z()) < tolerance; };
+  const auto isStable = [&](int x, int y) {
+    return view.stable.empty() || view.stable.ptr<std::uint8_t>(y)[x] != 0;
+  };
+  // Nearly always the pixel in the middle says it all.
+  if (u >= 0 && v >= 0 && u < depth_m.cols && v < depth_m.rows &&
+      isNear(depth_m.ptr<float>(v)[u]) && isStable(u, v)) {
+    return Background::agrees;
+  }
   int known = 0, behind = 0, before = 0;
   bool recent = false;
-  for (int dy = -reach_px; dy <= reach_px; dy += reach_px) {
-    const int y = v + dy;
+  for (int y = v - reach_px; y <= v + reach_px; y += reach_px) {
     if (y < 0 || y >= depth_m.rows) continue;
-    for (int dx = -reach_px; dx <= reach_px; dx += reach_px) {
-      const int x = u + dx;
-      if (x < 0 || x >= depth_m.cols) continue;
-      const float model = depth_m.at<float>(y, x);
-      if (!(model > 0.0F)) continue;
+    const auto* row = depth_m.ptr<float>(y);
+    for (int x = u - reach_px; x <= u + reach_px; x += reach_px) {
+      if (x < 0 || x >= depth_m.cols || !(row[x] > 0.0F)) continue;
       ++known;
-      if (std::abs(model - q.z()) < tolerance) {
-        if (view.stable.empty() || view.stable.at<std::uint8_t>(y, x) != 0) {
-          return Background::agrees;
-        }
+      if (isNear(row[x])) {
+        if (isStable(x, y)) return Background::agrees;
         recent = true;
       }
-      behind += model > q.z() + kClearly * tolerance;
-      before += model < q.z() - kClearly * tolerance;
+      behind += row[x] > q.z() + kClearly * tolerance;
+      before += row[x] < q.z() - kClearly * tolerance;
     }
   }
   if (recent) return Background::recent;
