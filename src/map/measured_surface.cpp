@@ -7,14 +7,6 @@
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
-namespace {
-
-void shrinkColor(const cv::Mat& color, const cv::Size& size, cv::Mat& small) {
-  cv::resize(color, small, size, 0, 0, cv::INTER_AREA);
-}
-
-}  // namespace
-
 void MeasuredSurface::assign(const WorkingFrame& frame, int shrink) {
   frame_ = &frame;
   sensor_ = frame.sensor;
@@ -22,9 +14,7 @@ void MeasuredSurface::assign(const WorkingFrame& frame, int shrink) {
   const int tracked = static_cast<int>(std::lround(full.fx / frame.camera.fx));
   spacing_rad_ = static_cast<float>(shrink / full.fx);
   levels_ = 1;
-  while (levels_ < kMostLevels && (shrink << levels_) <= std::min(full.width, full.height)) {
-    ++levels_;
-  }
+  while (levels_ < kMostLevels && (shrink << levels_) <= tracked) ++levels_;
   // The noise may be larger for its distance very near than far away.
   levels_ = 1 + std::max(levelOf(static_cast<float>(sensor_.min_depth_m)),
                          levelOf(static_cast<float>(sensor_.max_depth_m)));
@@ -46,29 +36,22 @@ void MeasuredSurface::setLevel(int index, int shrink, int tracked) {
   level.scale = static_cast<float>(tracked) / static_cast<float>(shrink);
   level.first = pixels_;
   pixels_ += static_cast<std::size_t>(size.area());
-  // The working frame may have the picture already.
-  int halvings = 0;
-  while (halvings < kLevels && tracked << halvings != shrink) ++halvings;
-  const bool is_there = halvings < kLevels;
-  if (is_there) {
-    level.depth_m =
-        halvings == 0 ? frame.depth_m : frame.levels[static_cast<std::size_t>(halvings)].depth_m;
-  } else if (shrink == 1) {
-    level.depth_m = frame.full_depth_m;
-  } else {
-    const bool from_finer = index > 0;
-    shrinkDepth(from_finer ? level_[i - 1].depth_m : frame.full_depth_m, from_finer ? 2 : shrink,
-                sensor_, own_depth_m_[i]);
-    level.depth_m = own_depth_m_[i];
-  }
   if (shrink == tracked) {
+    level.depth_m = frame.depth_m;
     level.color = frame.color;
-  } else if (shrink == 1) {
-    level.color = frame.full_color;
-  } else {
-    shrinkColor(shrink > tracked ? frame.color : frame.full_color, size, own_color_[i]);
-    level.color = own_color_[i];
+    return;
   }
+  if (shrink == 1) {
+    level.depth_m = frame.full_depth_m;
+    level.color = frame.full_color;
+    return;
+  }
+  const bool from_finer = index > 0;
+  shrinkDepth(from_finer ? level_[i - 1].depth_m : frame.full_depth_m, from_finer ? 2 : shrink,
+              sensor_, own_depth_m_[i]);
+  cv::resize(frame.full_color, own_color_[i], size, 0, 0, cv::INTER_AREA);
+  level.depth_m = own_depth_m_[i];
+  level.color = own_color_[i];
 }
 
 }  // namespace pf

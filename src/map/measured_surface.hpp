@@ -12,8 +12,9 @@
 namespace pf {
 
 /// What a frame measures, as densely as depth can tell its pixels apart: a near surface in the
-/// finest picture, farther ones in pictures halved once or more. Surfels are made of its pixels and
-/// compared with them, so that each is as large as its surface is known well.
+/// finest picture, farther ones in pictures halved once or more, to that of tracking. Surfels are
+/// made of its pixels and compared with them, so that each is as large as its surface is known
+/// well.
 class MeasuredSurface {
  public:
   static constexpr int kMostLevels = 4;
@@ -34,8 +35,8 @@ class MeasuredSurface {
     float rayY(int v) const { return (static_cast<float>(v) - cy) / fy; }
   };
 
-  /// The finest level is the frame's picture shrunk by `shrink`. Shares the frame's images and
-  /// reuses its own.
+  /// The finest level is the frame's picture shrunk by `shrink`, no other is coarser than the
+  /// working frame. Shares the frame's images and reuses its own.
   void assign(const WorkingFrame& frame, int shrink);
 
   int levels() const { return levels_; }

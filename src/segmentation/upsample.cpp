@@ -2,7 +2,7 @@
 #include "posefusion/segmentation/upsample.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/parallel.hpp"
@@ -19,50 +19,92 @@ constexpr float kColorSquare = 1200.0F, kMaxColorBadness = 8.0F;
 constexpr float kNoDepthBadness = 4.0F;
 constexpr std::size_t kRowsAtOnce = 8;
 
-struct Pixel {
-  cv::Point at;
-  float z;  // metres, 0: none
-  cv::Vec3b color;
+/// The pixels of one block, as arrays for the kernel.
+struct BlockPixels {
+  static constexpr int kMost = 64;  // at once
+  int count = 0;
+  float u[kMost], v[kMost];  // in cells
+  float z[kMost];            // metres, 0: none
+  float inverse_gap[kMost];  // 1 / the gap in depth that counts 1
+  float color[3][kMost];
+
+  void set(int i, const RgbdFrame& frame, const cv::Mat& depth_m, int step, const cv::Point& at) {
+    u[i] = static_cast<float>(at.x) / static_cast<float>(step);
+    v[i] = static_cast<float>(at.y) / static_cast<float>(step);
+    z[i] = depth_m.at<float>(at);
+    inverse_gap[i] = 1.0F / (kDepthGap_m + kDepthGapPerMetre * z[i]);
+    const cv::Vec3b& seen = frame.color.at<cv::Vec3b>(at);
+    for (int k = 0; k < 3; ++k) color[k][i] = static_cast<float>(seen[k]);
+  }
 };
 
-float colorBadness(const cv::Vec3b& a, const cv::Vec3b& b) {
-  float square = 0.0F;
-  for (int k = 0; k < 3; ++k) {
-    const float difference = static_cast<float>(a[k]) - static_cast<float>(b[k]);
-    square += difference * difference;
-  }
-  return std::min(square / kColorSquare, kMaxColorBadness);
+/// What a cell says of the pixels around it.
+struct CellVote {
+  float u, v;  // of its centre, in cells
+  float z;     // metres, 0: none
+  float color[3];
+};
+
+/// exp(-x) for 0 <= x, to seven digits, without branches so that it can become SIMD code.
+inline float expOfNegative(float x) {
+  constexpr float kLog2e = 1.44269504F, kLeast = -80.0F;
+  float t = -x * kLog2e;
+  t = t < kLeast ? kLeast : t;
+  const int whole = static_cast<int>(t) - 1;  // t <= 0: what is left lies in (0, 1]
+  const float f = t - static_cast<float>(whole);
+  // 2^f by its Taylor series around 1/2, to the seventh power.
+  constexpr float kRoot2 = 1.41421356F, kLn2 = 0.693147181F;
+  const float g = (f - 0.5F) * kLn2;
+  const float power =
+      kRoot2 *
+      (1.0F + g * (1.0F + g * (0.5F + g * (1.0F / 6 + g * (1.0F / 24 +
+                                                           g * (1.0F / 120 + g * (1.0F / 720)))))));
+  const std::int32_t bits = (whole + 127) << 23;
+  float scale = 0;
+  std::memcpy(&scale, &bits, sizeof scale);
+  return power * scale;
 }
 
-/// How little a cell says of a pixel.
-float badnessOf(const SceneGrid& grid, int cell, const Pixel& pixel) {
-  const int row = cell / grid.cols, col = cell % grid.cols;
-  const float du = static_cast<float>(pixel.at.x) / grid.step - (col + 0.5F);
-  const float dv = static_cast<float>(pixel.at.y) / grid.step - (row + 0.5F);
-  const float badness = kPerCell2 * (du * du + dv * dv);
-  if (pixel.z <= 0.0F) return badness;
-  if (!grid.hasDepth(cell)) {
-    return badness + colorBadness(pixel.color, grid.color.at<cv::Vec3b>(row, col)) +
-           kNoDepthBadness;
+/// Adds a cell's vote to each pixel's sum: its nearness in depth (or colour, where the cell has no
+/// depth) and in the image.
+POSEFUSION_SIMD_CLONES
+void addVotes(const BlockPixels& p, const CellVote& cell, float* __restrict sums) {
+  const float has_depth = cell.z > 0.0F ? 1.0F : 0.0F;
+  for (int i = 0; i < p.count; ++i) {
+    const float du = p.u[i] - cell.u, dv = p.v[i] - cell.v;
+    const float gap = (p.z[i] - cell.z) * p.inverse_gap[i];
+    const float of_depth = gap * gap < kMaxDepthBadness ? gap * gap : kMaxDepthBadness;
+    const float r = p.color[0][i] - cell.color[0], g = p.color[1][i] - cell.color[1];
+    const float b = p.color[2][i] - cell.color[2];
+    const float square = (r * r + g * g + b * b) * (1.0F / kColorSquare);
+    const float of_color =
+        kNoDepthBadness + (square < kMaxColorBadness ? square : kMaxColorBadness);
+    const float known = p.z[i] > 0.0F ? 1.0F : 0.0F;
+    const float more = known * (has_depth * of_depth + (1.0F - has_depth) * of_color);
+    sums[i] += expOfNegative(kPerCell2 * (du * du + dv * dv) + more);
   }
-  const float gap = (pixel.z - grid.z[cell]) / (kDepthGap_m + kDepthGapPerMetre * pixel.z);
-  return badness + std::min(gap * gap, kMaxDepthBadness);
 }
 
-/// The cells around one pixel vote for its label, each with its nearness in depth (or colour, where
-/// one of the two has no depth) and in the image.
-bool votePerson(const SceneGrid& grid, const std::vector<std::uint8_t>& labels,
-                const Pixel& pixel) {
-  const int col0 = pixel.at.x / grid.step, row0 = pixel.at.y / grid.step;
-  float person = 0.0F, other = 0.0F;
+/// The cells around a block vote for the labels of its pixels.
+void votePersons(const SceneGrid& grid, const std::vector<std::uint8_t>& labels, int row0, int col0,
+                 const BlockPixels& pixels, std::uint8_t* is_person) {
+  float person[BlockPixels::kMost] = {}, other[BlockPixels::kMost] = {};
   for (int row = std::max(0, row0 - 1); row <= std::min(grid.rows - 1, row0 + 1); ++row) {
     for (int col = std::max(0, col0 - 1); col <= std::min(grid.cols - 1, col0 + 1); ++col) {
       const int cell = row * grid.cols + col;
-      (labels[cell] ? person : other) += std::exp(-badnessOf(grid, cell, pixel));
+      const cv::Vec3b& color = grid.color.ptr<cv::Vec3b>(row)[col];
+      const CellVote vote{static_cast<float>(col) + 0.5F,
+                          static_cast<float>(row) + 0.5F,
+                          grid.z[cell],
+                          {static_cast<float>(color[0]), static_cast<float>(color[1]),
+                           static_cast<float>(color[2])}};
+      addVotes(pixels, vote, labels[cell] != 0 ? person : other);
     }
   }
   // Missing depth along an edge is shadow on the background; inside a person it is a person.
-  return person > (pixel.z > 0.0F ? other : kHoleOdds * other);
+  for (int i = 0; i < pixels.count; ++i) {
+    is_person[i] = person[i] > (pixels.z[i] > 0.0F ? other[i] : kHoleOdds * other[i]) ? 255 : 0;
+  }
 }
 
 enum class Surroundings { other, person, mixed };
@@ -91,14 +133,21 @@ cv::Mat upsampleMask(const RgbdFrame& frame, const cv::Mat& depth_m, const Scene
     if (kind == Surroundings::other) return;
     const cv::Rect block = cv::Rect(col * grid.step, row * grid.step, grid.step, grid.step) &
                            cv::Rect(0, 0, mask.cols, mask.rows);
-    for (int y = block.y; y < block.y + block.height; ++y) {
-      for (int x = block.x; x < block.x + block.width; ++x) {
-        const bool person =
-            kind == Surroundings::person ||
-            votePerson(grid, labels,
-                       {{x, y}, depth_m.at<float>(y, x), frame.color.at<cv::Vec3b>(y, x)});
-        mask.at<std::uint8_t>(y, x) = person ? 255 : 0;
-      }
+    if (kind == Surroundings::person) {
+      mask(block).setTo(255);
+      return;
+    }
+    BlockPixels pixels;
+    std::uint8_t is_person[BlockPixels::kMost];
+    for (int first = 0; first < block.area(); first += BlockPixels::kMost) {
+      const auto pixelAt = [&](int i) {
+        return cv::Point(block.x + (first + i) % block.width, block.y + (first + i) / block.width);
+      };
+      const int count = std::min(BlockPixels::kMost, block.area() - first);
+      for (int i = 0; i < count; ++i) pixels.set(i, frame, depth_m, grid.step, pixelAt(i));
+      pixels.count = count;
+      votePersons(grid, labels, row, col, pixels, is_person);
+      for (int i = 0; i < count; ++i) mask.at<std::uint8_t>(pixelAt(i)) = is_person[i];
     }
   };
   parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
