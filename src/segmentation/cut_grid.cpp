@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "posefusion/core/parallel.hpp"
 #include "posefusion/segmentation/paper_cut.hpp"
 
 namespace pf {
@@ -21,7 +22,8 @@ constexpr std::array<Neighbour, 4> kNeighbours{
 constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
 constexpr float kColorSpread = 900.0F;  // square of a colour difference that makes an edge cheap
 constexpr float kColorlessEdge = 0.4F;  // part of the smoothness that colour does not touch
-constexpr float kMinReach = 2.5F;       // of the length scale, in spacings of neighbours there
+constexpr std::size_t kRowsAtOnce = 8;
+constexpr float kMinReach = 2.5F;  // of the length scale, in spacings of neighbours there
 
 float colorDifference2(const SceneGrid& grid, int a, int b) {
   const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
@@ -36,39 +38,53 @@ float colorDifference2(const SceneGrid& grid, int a, int b) {
 
 }  // namespace
 
-/// Cells that cannot be a person stay out of the graph: they only pull on their neighbours.
+/// What each cell that may be a person's pays for a border towards its neighbours. Cells that
+/// cannot be stay out of the graph: they only pull on their neighbours.
 template <typename Weight>
-void GridCutter::addNodes(const SceneGrid& grid, const Unary& unary, const Weight& weight) {
+void GridCutter::weigh(const SceneGrid& grid, const Unary& unary, const Weight& weight) {
   const auto inGraph = [&](int cell) { return unary[cell] > -kCertain; };
-  node_.assign(grid.size(), -1);
-  for (int cell = 0; cell < grid.size(); ++cell) {
-    if (!inGraph(cell)) continue;
-    float outside = 0.0F;
-    const int row = cell / grid.cols, col = cell % grid.cols;
-    for (const Neighbour& n : kNeighbours) {
-      for (int sign : {-1, 1}) {
-        const int r = row + sign * n.down, c = col + sign * n.right;
-        if (r < 0 || c < 0 || r >= grid.rows || c >= grid.cols) continue;
-        const int other = r * grid.cols + c;
-        if (!inGraph(other)) outside += n.factor * weight(cell, other);
+  borders_.resize(grid.size());
+  parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const int last = static_cast<int>(end) * grid.cols;
+    for (int cell = static_cast<int>(begin) * grid.cols; cell < last; ++cell) {
+      Borders& borders = borders_[cell];
+      borders = Borders();
+      if (!inGraph(cell)) continue;
+      const int row = cell / grid.cols, col = cell % grid.cols;
+      for (std::size_t k = 0; k < kNeighbours.size(); ++k) {
+        const Neighbour& n = kNeighbours[k];
+        for (int sign : {-1, 1}) {
+          const int r = row + sign * n.down, c = col + sign * n.right;
+          if (r < 0 || c < 0 || r >= grid.rows || c >= grid.cols) continue;
+          const int other = r * grid.cols + c;
+          if (!inGraph(other)) {
+            borders.outside += n.factor * weight(cell, other);
+          } else if (sign > 0) {
+            borders.after[k] = n.factor * weight(cell, other);
+          }
+        }
       }
     }
-    node_[cell] =
-        graph_.addNode(std::max(0.0F, unary[cell]), std::max(0.0F, -unary[cell]) + outside);
+  });
+}
+
+void GridCutter::addNodes(const Unary& unary) {
+  node_.assign(unary.size(), -1);
+  for (std::size_t cell = 0; cell < unary.size(); ++cell) {
+    if (!(unary[cell] > -kCertain)) continue;
+    node_[cell] = graph_.addNode(std::max(0.0F, unary[cell]),
+                                 std::max(0.0F, -unary[cell]) + borders_[cell].outside);
   }
 }
 
-template <typename Weight>
-void GridCutter::addEdges(const SceneGrid& grid, const Weight& weight) {
+void GridCutter::addEdges(const SceneGrid& grid) {
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (node_[cell] < 0) continue;
-    const int row = cell / grid.cols, col = cell % grid.cols;
-    for (const Neighbour& n : kNeighbours) {
-      const int r = row + n.down, c = col + n.right;
-      if (r >= grid.rows || c < 0 || c >= grid.cols) continue;
-      const int other = r * grid.cols + c;
-      if (node_[other] < 0) continue;
-      graph_.addEdge(node_[cell], node_[other], n.factor * weight(cell, other));
+    for (std::size_t k = 0; k < kNeighbours.size(); ++k) {
+      const float weight = borders_[cell].after[k];
+      if (weight <= 0.0F) continue;
+      const int other = cell + kNeighbours[k].down * grid.cols + kNeighbours[k].right;
+      graph_.addEdge(node_[cell], node_[other], weight);
     }
   }
 }
@@ -77,16 +93,18 @@ void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const Segmentati
                      std::vector<std::uint8_t>& labels) {
   const float smoothness = static_cast<float>(config.smoothness);
   const float sigma_m = static_cast<float>(config.sigma_m);
-  const auto weight = [&](int a, int b) {
+  weigh(grid, unary, [&](int a, int b) {
     const float contrast = std::exp(-colorDifference2(grid, a, b) / kColorSpread);
     const float blended = smoothness * (kColorlessEdge + (1.0F - kColorlessEdge) * contrast);
     if (!grid.hasDepth(a) || !grid.hasDepth(b)) return kHoleEdge * blended;
     const float reach_m = std::max(sigma_m, kMinReach * grid.spacing * grid.z[a]);
     return blended * smoothnessCost((grid.point(a) - grid.point(b)).norm(), reach_m);
-  };
-  graph_.begin(grid.size(), static_cast<int>(kNeighbours.size()) * grid.size());
-  addNodes(grid, unary, weight);
-  addEdges(grid, weight);
+  });
+  const auto nodes =
+      std::count_if(unary.begin(), unary.end(), [](float u) { return u > -kCertain; });
+  graph_.begin(static_cast<int>(nodes), static_cast<int>(kNeighbours.size() * nodes));
+  addNodes(unary);
+  addEdges(grid);
   graph_.solve();
   labels.assign(grid.size(), 0);
   for (int cell = 0; cell < grid.size(); ++cell) {

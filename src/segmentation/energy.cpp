@@ -2,7 +2,9 @@
 #include "posefusion/segmentation/energy.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "posefusion/core/parallel.hpp"
 #include "posefusion/segmentation/mapped_people.hpp"
 
 namespace pf {
@@ -16,7 +18,8 @@ constexpr float kFarthestShown = 1.5F;    // and one that the detector's mask sh
 
 // Colour: the logarithm of a ratio of likelihoods, and how histograms are learnt.
 constexpr float kColorLimit = 3.0F;
-constexpr float kColorMemory = 0.3F;       // part of a newer histogram that is taken over
+constexpr float kColorMemory = 0.3F;  // part of a newer histogram that is taken over
+constexpr std::size_t kCellsAtOnce = 1024;
 constexpr float kMinColorSamples = 20.0F;  // cells
 
 // What the map says, in units of `model_weight`.
@@ -75,6 +78,19 @@ ColorHistogram learnColors(const Evidence& evidence, const std::vector<int>& bin
   return outside;
 }
 
+/// What each colour says of being each person's.
+using ColorTerms = std::array<float, ColorHistogram::kBins>;
+std::vector<ColorTerms> colorTerms(const std::vector<TrackedPerson>& people,
+                                   const ColorHistogram& outside) {
+  std::vector<ColorTerms> terms(people.size());
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    for (int bin = 0; bin < ColorHistogram::kBins; ++bin) {
+      terms[i][bin] = logLikelihoodRatio(people[i].color, outside, bin, kColorLimit);
+    }
+  }
+  return terms;
+}
+
 float modelTerm(Background background) {
   switch (background) {
     case Background::agrees:
@@ -116,21 +132,19 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
         ColorHistogram::binOf(grid.color.at<cv::Vec3b>(cell / grid.cols, cell % grid.cols));
   }
   const ColorHistogram outside = learnColors(evidence, bins, people);
+  const std::vector<ColorTerms> colors = colorTerms(people, outside);
   unary.assign(grid.size(), -kCertain);
-  for (int cell = 0; cell < grid.size(); ++cell) {
+  const auto termsOf = [&](int cell) {
     const int candidate = candidateOf(evidence, cell);
     const Background background = backgroundOf(evidence, people, cell);
     const bool in_front = background == Background::nearer;
-    if (candidate < 0 && !in_front) continue;
+    if (candidate < 0 && !in_front) return -kCertain;
     // Far from the skeleton only what stands before the map can be a person: an unseen leg.
     const float farthest = evidence.shown_person[cell] >= 0 ? kFarthestShown
                            : in_front                       ? kFarthestInFront
                                                             : kDistanceLimit;
     float value = 1.0F - std::min(evidence.distance.relative[cell], farthest);
-    if (candidate >= 0) {
-      value += color_weight *
-               logLikelihoodRatio(people[candidate].color, outside, bins[cell], kColorLimit);
-    }
+    if (candidate >= 0) value += color_weight * colors[candidate][bins[cell]];
     value += model_weight * modelTerm(background);
     const bool is_shown = candidate >= 0 && !people[candidate].body.shown.empty();
     value += mask_weight * shownTerm(evidence.shown, cell, is_shown);
@@ -140,8 +154,13 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
     }
     if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
-    unary[cell] = value;
-  }
+    return value;
+  };
+  parallelFor(unary.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      unary[cell] = termsOf(static_cast<int>(cell));
+    }
+  });
   for (const TrackedPerson& tracked : people) {
     for (int seed : tracked.body.seeds) unary[seed] = kCertain;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,13 +23,20 @@ class GridCutter {
            std::vector<std::uint8_t>& labels);
 
  private:
+  /// Of one cell: what it pays towards neighbours outside of the graph, and for the border to each
+  /// of the four that come after it.
+  struct Borders {
+    float outside = 0;
+    std::array<float, 4> after{};
+  };
   template <typename Weight>
-  void addNodes(const SceneGrid& grid, const Unary& unary, const Weight& weight);
-  template <typename Weight>
-  void addEdges(const SceneGrid& grid, const Weight& weight);
+  void weigh(const SceneGrid& grid, const Unary& unary, const Weight& weight);
+  void addNodes(const Unary& unary);
+  void addEdges(const SceneGrid& grid);
 
   GraphCut graph_;
-  std::vector<int> node_;  // of each cell, -1: none
+  std::vector<Borders> borders_;  // of each cell
+  std::vector<int> node_;         // of each cell, -1: none
 };
 
 /// Takes the label away from regions without an anchor of a person.
