@@ -14,6 +14,8 @@
 namespace pf {
 namespace {
 
+constexpr int kAhead = 12;  // pixels
+
 /// Discs closer together than this (m) belong to one surface.
 inline float surfaceThickness(const DepthSensor& sensor, float z) {
   return sensor.tolerance(z, 5.0F);
@@ -51,24 +53,36 @@ void prepare(const PinholeCamera& camera, const Eigen::Isometry3d& T, bool color
   }
 }
 
-/// Fills pixel (u, v) from the disc that it shows.
-void showDisc(const Disc& d, const Rays& rays, int u, int v, ModelView& view) {
-  view.stable.at<std::uint8_t>(v, u) = d.stable ? 1 : 0;
-  view.depth_m.at<float>(v, u) = intersect(d, rays.x(u), rays.y(v)).depth;
-  view.normal_x.at<float>(v, u) = d.nx;
-  view.normal_y.at<float>(v, u) = d.ny;
-  view.normal_z.at<float>(v, u) = d.nz;
-  view.intensity.at<float>(v, u) = d.intensity;
-  view.odds.at<float>(v, u) = d.odds;
-}
+/// The planes of a view, where one of its rows begins.
+struct ViewRow {
+  ViewRow(ModelView& view, int v)
+      : stable(view.stable.ptr<std::uint8_t>(v)),
+        depth_m(view.depth_m.ptr<float>(v)),
+        normal_x(view.normal_x.ptr<float>(v)),
+        normal_y(view.normal_y.ptr<float>(v)),
+        normal_z(view.normal_z.ptr<float>(v)),
+        intensity(view.intensity.ptr<float>(v)),
+        odds(view.odds.ptr<float>(v)) {}
 
-void showNothing(int u, int v, ModelView& view) {
-  view.stable.at<std::uint8_t>(v, u) = 0;
-  for (cv::Mat* plane : {&view.depth_m, &view.normal_x, &view.normal_y, &view.normal_z,
-                         &view.intensity, &view.odds}) {
-    plane->at<float>(v, u) = 0.0F;
+  /// Pixel u shows this disc, which its ray meets at `depth`.
+  void show(int u, const Disc& d, float depth) {
+    stable[u] = d.stable ? 1 : 0;
+    depth_m[u] = depth;
+    normal_x[u] = d.nx;
+    normal_y[u] = d.ny;
+    normal_z[u] = d.nz;
+    intensity[u] = d.intensity;
+    odds[u] = d.odds;
   }
-}
+
+  void showNothing(int u) {
+    stable[u] = 0;
+    for (float* plane : {depth_m, normal_x, normal_y, normal_z, intensity, odds}) plane[u] = 0.0F;
+  }
+
+  std::uint8_t* stable;
+  float *depth_m, *normal_x, *normal_y, *normal_z, *intensity, *odds;
+};
 
 cv::Vec3b colorOf(const SurfelArrays& s, std::uint32_t i) {
   return {cv::saturate_cast<unsigned char>(s.r[i]), cv::saturate_cast<unsigned char>(s.g[i]),
@@ -169,16 +183,23 @@ void SurfelRenderer::render(const SurfelMap& map, const PinholeCamera& camera,
   view.fragment = options.fragment;
   parallelFor(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      const std::size_t first = static_cast<std::size_t>(v) * camera.width;
+      ViewRow row(view, v);
       for (int u = 0; u < camera.width; ++u) {
-        const std::uint64_t key = b.chosen[static_cast<std::size_t>(v) * camera.width + u];
+        // Neighbouring pixels' discs lie anywhere in memory.
+        const std::uint64_t ahead = b.chosen[first + std::min(u + kAhead, camera.width - 1)];
+        if (ahead != PixelMinima::kNothing) {
+          __builtin_prefetch(&b.discs[static_cast<std::uint32_t>(ahead)]);
+        }
+        const std::uint64_t key = b.chosen[first + u];
         if (options.with_color) view.color.at<cv::Vec3b>(v, u) = {0, 0, 0};
         if (key == PixelMinima::kNothing) {
-          showNothing(u, v, view);
+          row.showNothing(u);
           continue;
         }
         const auto number = static_cast<std::uint32_t>(key);
         const Disc& disc = b.discs[number];
-        showDisc(disc, rays, u, v, view);
+        row.show(u, disc, intersect(disc, rays.x(u), rays.y(v)).depth);
         if (!options.with_color) continue;
         const SurfelBlock& block = map.blocks()[ranges[number / kRangeSurfels].block];
         view.color.at<cv::Vec3b>(v, u) = colorOf(block.surfels, disc.slot);
