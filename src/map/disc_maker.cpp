@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "pixel_box.hpp"
+
 namespace pf {
 namespace {
 
 constexpr float kMaxSplatRadius_px = 12.0F;
-constexpr float kAlmostOne = 0.9999F;  // int(x + kAlmostOne) rounds x up
 
 }  // namespace
 
@@ -45,19 +46,13 @@ std::uint32_t DiscMaker::make(const SurfelRange& range, Disc* discs) const {
 
 bool DiscMaker::cover(const ProjectedRange& seen, std::uint32_t k, Disc& d) const {
   const float reach = std::min(seen.reach[k], kMaxSplatRadius_px);
-  const float u = seen.u[k], v = seen.v[k];
-  // Casts cut towards zero: rounding down, since nothing below zero is left after max().
-  const float left = std::max(0.0F, u - reach) + kAlmostOne, right = u + reach;
-  const float top = std::max(0.0F, v - reach) + kAlmostOne, bottom = v + reach;
-  if (!(right >= 0 && bottom >= 0 && left < static_cast<float>(rays_.width) &&
-        top < static_cast<float>(rays_.height))) {
-    return false;
-  }
-  d.first_u = static_cast<std::int16_t>(left);
-  d.first_v = static_cast<std::int16_t>(top);
-  d.last_u = static_cast<std::int16_t>(std::min(right, static_cast<float>(rays_.width - 1)));
-  d.last_v = static_cast<std::int16_t>(std::min(bottom, static_cast<float>(rays_.height - 1)));
-  return d.first_u <= d.last_u && d.first_v <= d.last_v;
+  const PixelBox box = pixelsWithin(seen.u[k], seen.v[k], reach, rays_.width, rays_.height);
+  if (box.isEmpty()) return false;
+  d.first_u = static_cast<std::int16_t>(box.first_u);
+  d.last_u = static_cast<std::int16_t>(box.last_u);
+  d.first_v = static_cast<std::int16_t>(box.first_v);
+  d.last_v = static_cast<std::int16_t>(box.last_v);
+  return true;
 }
 
 }  // namespace pf

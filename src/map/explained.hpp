@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "measured_surface.hpp"
+#include "pixel_box.hpp"
 #include "posefusion/core/parallel.hpp"
 
 namespace pf {
@@ -49,18 +50,13 @@ class Explained {
   std::int64_t operator[](std::size_t pixel) const { return pixels_[pixel]; }
   const std::int64_t* at(std::size_t pixel) const { return &pixels_[pixel]; }
 
-  /// Offers an explanation for the pixels of a level around (u, v), `reach` pixels far, with
-  /// u, v > -0.5 and reach >= 0.5. Threads may call it at once: the smallest number stays,
-  /// whichever comes first.
+  /// Offers an explanation for the pixels of a level around (u, v), `reach` pixels far. Threads may
+  /// call it at once: the smallest number stays, whichever comes first.
   void offer(const MeasuredSurface::Level& level, float u, float v, float reach, std::int64_t by) {
-    // Casts cut towards zero: rounding up, and down where nothing is below zero.
-    const int first_u = static_cast<int>(std::max(0.0F, u - reach) + kAlmostOne);
-    const int last_u = std::min(level.depth_m.cols - 1, static_cast<int>(u + reach));
-    const int first_v = static_cast<int>(std::max(0.0F, v - reach) + kAlmostOne);
-    const int last_v = std::min(level.depth_m.rows - 1, static_cast<int>(v + reach));
-    for (int y = first_v; y <= last_v; ++y) {
+    const PixelBox box = pixelsWithin(u, v, reach, level.depth_m.cols, level.depth_m.rows);
+    for (int y = box.first_v; y <= box.last_v; ++y) {
       std::int64_t* row = &pixels_[level.at(0, y)];
-      for (int x = first_u; x <= last_u; ++x) {
+      for (int x = box.first_u; x <= box.last_u; ++x) {
         std::int64_t old = __atomic_load_n(row + x, __ATOMIC_RELAXED);
         while (by < old && !__atomic_compare_exchange_n(row + x, &old, by, true, __ATOMIC_RELAXED,
                                                         __ATOMIC_RELAXED)) {
@@ -71,7 +67,6 @@ class Explained {
 
  private:
   static constexpr std::size_t kGrain = 1 << 14;
-  static constexpr float kAlmostOne = 0.9999F;
 
   std::vector<std::int64_t> pixels_;
 };

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <opencv2/core.hpp>
 

@@ -59,11 +59,11 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
   for (std::uint32_t next = 0; next < range.end - range.begin;) {
     const std::size_t count = findPlaces(s, range, seen, next, places);
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = places[k].surfel;
-      if (!updateOne(s, i, places[k], result)) {
-        doubt(s, i, places[k]);
+      if (!updateOne(s, places[k], result)) {
+        doubt(s, places[k]);
         continue;
       }
+      const std::size_t i = places[k].surfel;
       ++result.merged;
       result.moved.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
     }
@@ -109,7 +109,8 @@ std::size_t SurfelUpdate::findPlaces(const SurfelArrays& s, const SurfelRange& r
 }
 
 /// True when this frame supports the surfel.
-bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const {
+bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) const {
+  const std::size_t i = p.surfel;
   const float tolerance = agreement(p.z);
   if (!evidence_.person_m.empty()) {
     const float person = evidence_.person_m.at<float>(p.v, p.u);
@@ -133,8 +134,8 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   const float cosine = m.n.dot(own);
   if (off > tolerance) {
     if (isLayer(p, m.depth, cosine)) {
-      result.layers.push_back({static_cast<std::uint32_t>(i),
-                               static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v))});
+      result.layers.push_back(
+          {p.surfel, static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v))});
     }
     return false;
   }
@@ -144,9 +145,9 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, std::size_t i, const Place& p, Res
   const bool stable = map_.isStable(s, i);
   explain(p, stable ? s.created[i] : map_.frame());
   if (!stable || (result.stable_too && s.created[i] >= another_pass_)) {
-    result.supported.push_back(supportedAt(s, i, p));
+    result.supported.push_back(supportedAt(s, p));
   }
-  merge(s, i, p, m, cosine);
+  merge(s, p, m, cosine);
   return true;
 }
 
@@ -166,9 +167,10 @@ bool SurfelUpdate::isFarFromRims(const Place& p, float beyond_m) const {
 
 /// Surfels made close to a person not long ago, and not seen now, may have been mapped from that
 /// person before detection: they are removed also where nothing is seen behind them.
-void SurfelUpdate::doubt(SurfelArrays& s, std::size_t i, const Place& p) const {
-  const bool is_young = s.created[i] > map_.frame() - unnoticed_;
-  if (is_young && evidence_.near_people.has(p.u, p.v, p.z)) contradictOne(s, i, kUnnoticedFrames);
+void SurfelUpdate::doubt(SurfelArrays& s, const Place& p) const {
+  const bool is_young = s.created[p.surfel] > map_.frame() - unnoticed_;
+  if (is_young && evidence_.near_people.has(p.u, p.v, p.z))
+    contradictOne(s, p.surfel, kUnnoticedFrames);
 }
 
 bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
@@ -176,12 +178,10 @@ bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
          std::abs(measured - p.z) <= kLayerTolerances * agreement(p.z);
 }
 
-SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, std::size_t i,
-                                                  const Place& p) const {
+SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, const Place& p) const {
   const float cosine = p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-  return {static_cast<std::uint32_t>(i),
-          static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v)), p.z, std::abs(cosine),
-          std::max(s.radius[i], p.z / p.level->fx)};
+  return {p.surfel, static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v)), p.z,
+          std::abs(cosine), std::max(s.radius[p.surfel], p.z / p.level->fx)};
 }
 
 void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
@@ -244,8 +244,9 @@ void SurfelUpdate::explain(const Place& p, std::int32_t made) const {
 }
 
 /// Running weighted mean of depth along the pixel's ray, normal, colour and radius.
-void SurfelUpdate::merge(SurfelArrays& s, std::size_t i, const Place& p, const Measurement& m,
+void SurfelUpdate::merge(SurfelArrays& s, const Place& p, const Measurement& m,
                          float cosine) const {
+  const std::size_t i = p.surfel;
   s.seen[i] = map_.frame();
   s.odds[i] = static_odds::supported(s.odds[i], worth_);
   const float facing = -p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);

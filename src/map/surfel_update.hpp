@@ -81,19 +81,18 @@ class SurfelUpdate {
   };
   std::size_t findPlaces(const SurfelArrays& s, const SurfelRange& range,
                          const ProjectedRange& seen, std::uint32_t& next, Places& places) const;
-  bool updateOne(SurfelArrays& s, std::size_t i, const Place& p, Result& result) const;
+  bool updateOne(SurfelArrays& s, const Place& p, Result& result) const;
   float agreement(float z) const { return evidence_.measured.agreement(z); }
   bool isLayer(const Place& p, float measured, float cosine) const;
   bool isFarFromRims(const Place& p, float beyond_m) const;
-  void doubt(SurfelArrays& s, std::size_t i, const Place& p) const;
+  void doubt(SurfelArrays& s, const Place& p) const;
   /// By so many frames like this one.
   void contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;
   Measurement measure(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;
-  Supported supportedAt(const SurfelArrays& s, std::size_t i, const Place& p) const;
+  Supported supportedAt(const SurfelArrays& s, const Place& p) const;
   bool isDoubled(const Supported& seen, std::int32_t before) const;
-  void merge(SurfelArrays& s, std::size_t i, const Place& p, const Measurement& m,
-             float cosine) const;
+  void merge(SurfelArrays& s, const Place& p, const Measurement& m, float cosine) const;
   void mergeNormal(SurfelArrays& s, std::size_t i, float share, const Eigen::Vector3f& n) const;
 
   const WorkingFrame& frame_;

@@ -22,8 +22,12 @@ constexpr std::array<Neighbour, 4> kNeighbours{
 constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
 constexpr float kColorSpread = 900.0F;  // square of a colour difference that makes an edge cheap
 constexpr float kColorlessEdge = 0.4F;  // part of the smoothness that colour does not touch
+constexpr float kMinReach = 2.5F;       // of the length scale, in spacings of neighbours there
+
 constexpr std::size_t kRowsAtOnce = 8;
-constexpr float kMinReach = 2.5F;  // of the length scale, in spacings of neighbours there
+
+/// Cells that cannot be a person stay out of the graph: they only pull on their neighbours.
+bool isInGraph(float unary) { return unary > -kCertain; }
 
 float colorDifference2(const SceneGrid& grid, int a, int b) {
   const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
@@ -38,18 +42,16 @@ float colorDifference2(const SceneGrid& grid, int a, int b) {
 
 }  // namespace
 
-/// What each cell that may be a person's pays for a border towards its neighbours. Cells that
-/// cannot be stay out of the graph: they only pull on their neighbours.
+/// What each cell of the graph pays for a border towards its neighbours.
 template <typename Weight>
 void GridCutter::weigh(const SceneGrid& grid, const Unary& unary, const Weight& weight) {
-  const auto inGraph = [&](int cell) { return unary[cell] > -kCertain; };
   borders_.resize(grid.size());
   parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     const int last = static_cast<int>(end) * grid.cols;
     for (int cell = static_cast<int>(begin) * grid.cols; cell < last; ++cell) {
       Borders& borders = borders_[cell];
       borders = Borders();
-      if (!inGraph(cell)) continue;
+      if (!isInGraph(unary[cell])) continue;
       const int row = cell / grid.cols, col = cell % grid.cols;
       for (std::size_t k = 0; k < kNeighbours.size(); ++k) {
         const Neighbour& n = kNeighbours[k];
@@ -57,7 +59,7 @@ void GridCutter::weigh(const SceneGrid& grid, const Unary& unary, const Weight& 
           const int r = row + sign * n.down, c = col + sign * n.right;
           if (r < 0 || c < 0 || r >= grid.rows || c >= grid.cols) continue;
           const int other = r * grid.cols + c;
-          if (!inGraph(other)) {
+          if (!isInGraph(unary[other])) {
             borders.outside += n.factor * weight(cell, other);
           } else if (sign > 0) {
             borders.after[k] = n.factor * weight(cell, other);
@@ -71,7 +73,7 @@ void GridCutter::weigh(const SceneGrid& grid, const Unary& unary, const Weight& 
 void GridCutter::addNodes(const Unary& unary) {
   node_.assign(unary.size(), -1);
   for (std::size_t cell = 0; cell < unary.size(); ++cell) {
-    if (!(unary[cell] > -kCertain)) continue;
+    if (!isInGraph(unary[cell])) continue;
     node_[cell] = graph_.addNode(std::max(0.0F, unary[cell]),
                                  std::max(0.0F, -unary[cell]) + borders_[cell].outside);
   }
@@ -100,8 +102,7 @@ void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const Segmentati
     const float reach_m = std::max(sigma_m, kMinReach * grid.spacing * grid.z[a]);
     return blended * smoothnessCost((grid.point(a) - grid.point(b)).norm(), reach_m);
   });
-  const auto nodes =
-      std::count_if(unary.begin(), unary.end(), [](float u) { return u > -kCertain; });
+  const auto nodes = std::count_if(unary.begin(), unary.end(), isInGraph);
   graph_.begin(static_cast<int>(nodes), static_cast<int>(kNeighbours.size() * nodes));
   addNodes(unary);
   addEdges(grid);

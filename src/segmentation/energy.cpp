@@ -18,8 +18,7 @@ constexpr float kFarthestShown = 1.5F;    // and one that the detector's mask sh
 
 // Colour: the logarithm of a ratio of likelihoods, and how histograms are learnt.
 constexpr float kColorLimit = 3.0F;
-constexpr float kColorMemory = 0.3F;  // part of a newer histogram that is taken over
-constexpr std::size_t kCellsAtOnce = 1024;
+constexpr float kColorMemory = 0.3F;       // part of a newer histogram that is taken over
 constexpr float kMinColorSamples = 20.0F;  // cells
 
 // What the map says, in units of `model_weight`.
@@ -35,6 +34,8 @@ constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the m
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
 constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
+
+constexpr std::size_t kCellsAtOnce = 1024;
 
 /// What the map says of a cell, unless its candidate is known to be in the map by mistake.
 Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerson>& people,
