@@ -24,3 +24,28 @@ function(posefusion_share_headers target kind)
   set_property(GLOBAL PROPERTY posefusion_headers_of_${kind} ${target})
   target_precompile_headers(${target} PRIVATE ${ARGN})
 endfunction()
+
+option(POSEFUSION_TOGETHER "Compile some sources of a folder at once; OFF: each by itself" ON)
+
+# Compiles five sources of a folder at once: what they all include and instantiate is compiled once then. So names in the
+# unnamed namespaces of a folder differ from each other.
+function(posefusion_compile_together target)
+  if(NOT POSEFUSION_TOGETHER OR CMAKE_VERSION VERSION_LESS 3.18)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(path ${source} ABSOLUTE)
+    get_filename_component(folder ${path} DIRECTORY)
+    get_filename_component(name ${folder} NAME)
+    if(NOT DEFINED count_${name})
+      set(count_${name} 0)
+    endif()
+    math(EXPR batch "${count_${name}} / 5")
+    math(EXPR count_${name} "${count_${name}} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}_${batch})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # Of private state with members of such names: there is one source that has it, though not as the main file.
+  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+endfunction()

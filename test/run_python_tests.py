@@ -10,6 +10,7 @@ import importlib.util
 import os
 import pathlib
 import sys
+import time
 import unittest
 import xml.etree.ElementTree as tree
 
@@ -17,15 +18,20 @@ sys.dont_write_bytecode = True
 
 
 class Report(unittest.TextTestResult):
-    """Keeps the result of each case."""
+    """Keeps the result of each case, and the seconds that it took."""
 
     def __init__(self, *arguments, **named):
         super().__init__(*arguments, **named)
         self.cases = []
 
+    def startTest(self, test):
+        super().startTest(test)
+        self.begun_s = time.monotonic()
+
     def stopTest(self, test):
         super().stopTest(test)
-        case = tree.Element("testcase", classname=type(test).__name__, name=test._testMethodName)
+        case = tree.Element("testcase", classname=type(test).__name__, name=test._testMethodName,
+                            time=f"{time.monotonic() - self.begun_s:.3f}")
         for kind, entries in (("failure", self.failures), ("error", self.errors),
                               ("skipped", self.skipped)):
             for failed, message in entries:

@@ -23,7 +23,7 @@ constexpr double kGrazing = 0.25;     // cosine between view and normal
 // What a plane leaves of a window, in variances of the noise. Of depth as measured it is one on
 // average, more in half of all windows; an edge leaves many.
 constexpr double kMostOfPlane = 3.0;
-constexpr double kNearest_m = 0.4;  // below it structured light is not specified
+constexpr double kNearestDepth_m = 0.4;  // below it structured light is not specified
 // Where the range of the sensor ends, of what is near its end only what is measured too near is
 // left.
 constexpr double kSigmasOfRange = 3.0;
@@ -35,7 +35,7 @@ double inverseSigma(const DepthSensor& sensor, double w) {
 
 bool isInRange(const DepthSensor& sensor, double w) {
   const double z = 1.0 / w;
-  return w > 0 && z > kNearest_m &&
+  return w > 0 && z > kNearestDepth_m &&
          z + kSigmasOfRange * sensor.sigma(static_cast<float>(z)) < sensor.max_depth_m;
 }
 

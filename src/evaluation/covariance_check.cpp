@@ -11,7 +11,7 @@
 namespace pf {
 namespace {
 
-constexpr std::int64_t kLongestMotion_ns = 500'000'000;
+constexpr std::int64_t kLongestStep_ns = 500'000'000;
 /// 99.73 % of six independent normal variables lie within (chi-squared, 6 degrees of freedom).
 constexpr double kEllipsoid = 20.062;
 
@@ -48,7 +48,7 @@ CovarianceShare checkCovariances(const Trajectory& truth, const std::vector<Unce
   for (std::size_t i = 1, at = 0; i < pairs.size(); ++i) {
     const std::int64_t stamp_ns = pairs[i].estimate.stamp_ns;
     while (poses[at].stamp_ns < stamp_ns) ++at;
-    if (stamp_ns - pairs[i - 1].estimate.stamp_ns > kLongestMotion_ns) continue;
+    if (stamp_ns - pairs[i - 1].estimate.stamp_ns > kLongestStep_ns) continue;
     const Vector6d error = motionError(pairs[i - 1], pairs[i]);
     const Matrix6d& covariance = poses[at].covariance;
     largest.push_back(0.0);

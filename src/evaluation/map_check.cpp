@@ -9,8 +9,8 @@
 namespace pf {
 namespace {
 
-constexpr double kMinDepth_m = 0.1;
-constexpr double kMaxDepth_m = 20.0;
+constexpr double kLeastDepth_m = 0.1;
+constexpr double kMostDepth_m = 20.0;
 constexpr double kBin_m = 1e-4;
 constexpr std::size_t kBins = 100'000;  // the last one takes all above
 
@@ -23,7 +23,7 @@ void DepthCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
   RenderOptions options;
   options.age = SurfelAge::all;
   renderer_.render(map_, frame.camera, T_map_camera, options, view_);
-  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m_);
+  depthInMetres(frame, kLeastDepth_m, kMostDepth_m, depth_m_);
   if (!mask.empty()) depth_m_.setTo(0, mask != 0);
   ++frames_;
   for (int v = 0; v < depth_m_.rows; ++v) {
@@ -60,13 +60,13 @@ PeopleCheck::PeopleCheck(const SurfelArrays& surfels, double tolerance_m)
 
 void PeopleCheck::add(const RgbdFrame& frame, const cv::Mat& mask,
                       const Eigen::Isometry3d& T_map_camera) {
-  depthInMetres(frame, kMinDepth_m, kMaxDepth_m, depth_m_);
+  depthInMetres(frame, kLeastDepth_m, kMostDepth_m, depth_m_);
   const Eigen::Isometry3d T_camera_map = T_map_camera.inverse();
   parallelFor(surfels_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d point =
           T_camera_map * Eigen::Vector3d(surfels_.x[i], surfels_.y[i], surfels_.z[i]);
-      if (point.z() < kMinDepth_m) continue;
+      if (point.z() < kLeastDepth_m) continue;
       const Eigen::Vector2d pixel = frame.camera.project(point);
       const auto u = static_cast<int>(std::lround(pixel.x()));
       const auto v = static_cast<int>(std::lround(pixel.y()));

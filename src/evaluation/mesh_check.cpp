@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kSpacing_m = 0.01F;
-constexpr float kFacing = 0.3F;  // 73 degrees
-constexpr std::size_t kGrain = 1024;
+constexpr float kFacingOfTriangle = 0.3F;  // 73 degrees
+constexpr std::size_t kCellsAtOnce = 1024;
 
 /// The value that this share of the area stays below.
 double quantile(const std::vector<float>& values, const std::vector<float>& areas, double share) {
@@ -39,13 +39,13 @@ std::size_t countCovered(const SurfaceSamples& seen, const SurfaceSamples& discs
   const PointGrid grid(discs.positions);
   const float largest = *std::max_element(radii.begin(), radii.end());
   std::vector<char> covered(seen.positions.size(), 0);
-  parallelFor(covered.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(covered.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
     float at = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const NormalLine line{seen.positions[i], seen.normals[i]};
       grid.visit(line.box(kCovered_m, largest + kCoveredBeside_m), [&](std::size_t k) {
         if (covered[i] != 0) return;
-        const bool met = line.meets(grid[k], discs.normals[k], radii[k], kFacing, at);
+        const bool met = line.meets(grid[k], discs.normals[k], radii[k], kFacingOfTriangle, at);
         const bool beside = (grid[k] - line.from).norm() <= kCoveredBeside_m + radii[k];
         covered[i] = beside || (met && std::abs(at) <= kCovered_m) ? 1 : 0;
       });

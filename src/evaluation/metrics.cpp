@@ -15,9 +15,7 @@
 namespace pf {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMaxTruthDifference_ns = 20'000'000;
-constexpr double kDegrees = 180.0 / M_PI;
 
 /// Index of the pose nearest in time; the trajectory is sorted and not empty.
 std::size_t nearest(const Trajectory& trajectory, std::int64_t stamp_ns) {
@@ -53,7 +51,7 @@ RelativeError relativeError(const Trajectory& truth, const Trajectory& estimate,
     moved.translation() *= scale;
     const Eigen::Isometry3d error = (truth_i->inverse() * *truth_j).inverse() * moved;
     translations.push_back(error.translation().norm());
-    rotations.push_back(logSo3(error.linear()).norm() * kDegrees);
+    rotations.push_back(logSo3(error.linear()).norm() * kDegreesPerRadian);
   }
   return {statisticsOf(translations), statisticsOf(rotations)};
 }

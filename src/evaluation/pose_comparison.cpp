@@ -12,7 +12,6 @@
 namespace pf {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kPathTolerance = 0.1;  ///< of a step's length: evo's, for motions that overlap
 
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
@@ -93,7 +92,7 @@ PoseErrors sizesOf(const std::vector<Eigen::Isometry3d>& errors) {
   std::vector<double> distances, angles;
   for (const Eigen::Isometry3d& error : errors) {
     distances.push_back(error.translation().norm());
-    angles.push_back(logSo3(error.linear()).norm() * kDegrees);
+    angles.push_back(logSo3(error.linear()).norm() * kDegreesPerRadian);
   }
   return {statisticsOf(std::move(distances)), statisticsOf(std::move(angles))};
 }

@@ -10,8 +10,8 @@ namespace pf {
 namespace {
 
 constexpr float kTolerance_m = 0.05F, kSigmas = 3.0F;
-constexpr float kFacing = 0.342F;  // 70 degrees
-constexpr std::size_t kGrain = 4096;
+constexpr float kFacingOfView = 0.342F;  // 70 degrees
+constexpr std::size_t kSamplesAtOnce = 4096;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void SeenSurface::add(const RgbdFrame& frame, const cv::Mat& mask,
   const auto cx = static_cast<float>(frame.camera.cx), cy = static_cast<float>(frame.camera.cy);
   const auto sees = [&](const Eigen::Vector3f& position, const Eigen::Vector3f& normal) {
     const Eigen::Vector3f p = T_camera_truth * position, ray = centre - position;
-    if (p.z() <= 0 || normal.dot(ray) < kFacing * ray.norm()) return false;
+    if (p.z() <= 0 || normal.dot(ray) < kFacingOfView * ray.norm()) return false;
     const long u = std::lround(fx * p.x() / p.z() + cx), v = std::lround(fy * p.y() / p.z() + cy);
     if (u < 0 || v < 0 || u >= depth_m_.cols || v >= depth_m_.rows) return false;
     const auto row = static_cast<int>(v), col = static_cast<int>(u);
@@ -35,7 +35,7 @@ void SeenSurface::add(const RgbdFrame& frame, const cv::Mat& mask,
     if (z <= 0 || (!mask.empty() && mask.at<std::uint8_t>(row, col) != 0)) return false;
     return std::abs(z - p.z()) < kTolerance_m + kSigmas * sensor_.sigma(z);
   };
-  parallelFor(seen_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(seen_.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (sees(truth_.positions[i], truth_.normals[i])) ++seen_[i];
     }

@@ -13,7 +13,7 @@ namespace pf {
 namespace {
 
 constexpr float kFirstSearch_m = 0.05F;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kSurfelsAtOnce = 4096;
 // Surfels of one layer, and the truth that they belong to, lean against each other less than this.
 constexpr float kSameFacing = 0.8F;      // 37 degrees
 constexpr float kFacingOfTruth = 0.5F;   // 60 degrees: a surfel's normal is the noisier one
@@ -65,7 +65,7 @@ std::vector<float> distancesToSurface(const std::vector<Eigen::Vector3f>& points
                                       const SurfaceSamples& truth) {
   const PointGrid grid(truth.positions);
   std::vector<float> distances(points.size(), kFarFromSurface_m);
-  parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(points.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       float& least = distances[i];
       // The farther it is, the wider the search.
@@ -95,7 +95,7 @@ std::vector<char> surfelsInTwoLayers(const SurfelArrays& surfels,
   for (const float radius : surfels.radius) largest_radius = std::max(largest_radius, radius);
   const PointGrid surfel_grid(map.positions), truth_grid(truth.positions);
   std::vector<char> doubled(surfels.size(), 0);
-  parallelFor(surfels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(surfels.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<float> layers, truths;
     for (std::size_t i = begin; i < end; ++i) {
       const NormalLine line{map.positions[i], map.normals[i]};

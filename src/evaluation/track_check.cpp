@@ -8,12 +8,10 @@
 #include <utility>
 
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/stamps.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr double kDegrees = 180.0 / M_PI;
 
 /// The estimated poses with the true ones of just their time.
 std::vector<PosePair> pairWithTruth(const Trajectory& truth, const Trajectory& estimate) {
@@ -25,7 +23,7 @@ std::vector<PosePair> pairWithTruth(const Trajectory& truth, const Trajectory& e
 }
 
 double angleDeg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return kDegrees * logSo3(a.linear().transpose() * b.linear()).norm();
+  return kDegreesPerRadian * logSo3(a.linear().transpose() * b.linear()).norm();
 }
 
 /// Whether the motion from one pair to another differs too much between truth and estimate.

@@ -12,7 +12,7 @@ namespace {
 
 // Depth past the largest used still shows that the space in front of it is empty, up to here: no
 // sensor of a robot's measures farther indoors, and some report their largest number for "nothing".
-constexpr double kFarthest_m = 15.0;
+constexpr double kFarthestBin_m = 15.0;
 constexpr double kFocal_px = 262.5;  // of a Kinect at 320x240
 constexpr int kMostShrink = 8;
 
@@ -44,7 +44,8 @@ void WorkingFrame::assign(const RgbdFrame& frame, const cv::Mat& mask, const Fra
   const int shrink = shrinkFor(config, frame.camera.fx);
   camera = frame.camera.shrunk(shrink);
   const cv::Size size(camera.width, camera.height);
-  depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthest_m), full_depth_m);
+  depthInMetres(frame, config.min_depth_m, std::max(config.max_depth_m, kFarthestBin_m),
+                full_depth_m);
   shrinkDepth(full_depth_m, shrink, sensor, depth_m);
   cv::threshold(full_depth_m, full_depth_m, config.max_depth_m, 0, cv::THRESH_TOZERO_INV);
   cv::threshold(depth_m, beyond_m, config.max_depth_m, 0, cv::THRESH_TOZERO);

@@ -12,7 +12,7 @@
 namespace pf {
 namespace {
 
-std::uint32_t toByte(float value) {
+std::uint32_t colorByte(float value) {
   if (!std::isfinite(value)) return 128;
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
 }
@@ -25,7 +25,7 @@ void writePcd(const SurfelArrays& s, std::ostream& out) {
       << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << count << "\nDATA binary\n";
   for (std::size_t i = 0; i < s.size(); ++i) {
     const std::array<float, 6> point = {s.x[i], s.y[i], s.z[i], s.nx[i], s.ny[i], s.nz[i]};
-    const std::uint32_t rgb = toByte(s.r[i]) << 16 | toByte(s.g[i]) << 8 | toByte(s.b[i]);
+    const std::uint32_t rgb = colorByte(s.r[i]) << 16 | colorByte(s.g[i]) << 8 | colorByte(s.b[i]);
     out.write(reinterpret_cast<const char*>(point.data()), sizeof point);
     out.write(reinterpret_cast<const char*>(&rgb), sizeof rgb);
   }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStepsPerMetre = 5000;
 
-struct Entry {
+struct ListedCamera {
   const char* recorded_by;
   std::vector<std::string> beginnings;  ///< of a folder's name, in small letters
   double fx, fy, cx, cy;
@@ -20,8 +20,8 @@ struct Entry {
 };
 
 /// TUM publishes the images of fr3 without distortion.
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all = {
+const std::vector<ListedCamera>& entries() {
+  static const std::vector<ListedCamera> all = {
       {"TUM fr1",
        {"rgbd_dataset_freiburg1", "freiburg1", "fr1"},
        517.3,
@@ -54,7 +54,7 @@ bool beginsWith(const std::string& name, const std::string& beginning) {
          std::isdigit(static_cast<unsigned char>(name[beginning.size()])) == 0;
 }
 
-CameraFile cameraOf(const Entry& entry) {
+CameraFile cameraOf(const ListedCamera& entry) {
   CameraFile file;
   file.camera.width = 640;
   file.camera.height = 480;
@@ -77,7 +77,7 @@ std::optional<KnownCamera> knownCamera(const std::string& folder) {
     std::string name = path.filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const Entry& entry : entries()) {
+    for (const ListedCamera& entry : entries()) {
       for (const std::string& beginning : entry.beginnings) {
         if (beginsWith(name, beginning)) return KnownCamera{entry.recorded_by, cameraOf(entry)};
       }

@@ -42,7 +42,7 @@ void pack(const SurfelArrays& s, std::size_t i, const RigidMotion& motion, char*
 
 /// `addAll(add)` calls add(surfels, i, motion) `count` times.
 template <typename AddAll>
-void write(const std::string& path, std::size_t count, const AddAll& addAll) {
+void writePoints(const std::string& path, std::size_t count, const AddAll& addAll) {
   AtomicFile file(path);
   file.stream() << plyHeader({{"vertex", count, vertexProperties()}},
                              "surfels of posefusion: map frame, metres");
@@ -96,7 +96,7 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map,
                     const Eigen::Isometry3d& T_file_map) {
   const RigidMotion motion(T_file_map);
   const std::size_t count = savedSurfels(map);
-  write(path, count, [&](const auto& add) {
+  writePoints(path, count, [&](const auto& add) {
     map.forEachSurfelOf(kFirstFragment, [&](const SurfelArrays& surfels, std::size_t i) {
       if (map.isStable(surfels, i)) add(surfels, i, motion);
     });
@@ -106,7 +106,7 @@ std::size_t saveMap(const std::string& path, const SurfelMap& map,
 
 void saveSurfels(const std::string& path, const SurfelArrays& surfels) {
   const RigidMotion none(Eigen::Isometry3d::Identity());
-  write(path, surfels.size(), [&](const auto& add) {
+  writePoints(path, surfels.size(), [&](const auto& add) {
     for (std::size_t i = 0; i < surfels.size(); ++i) add(surfels, i, none);
   });
 }

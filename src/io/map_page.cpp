@@ -56,7 +56,7 @@ std::array<Eigen::Vector3f, 2> boxOf(const PageGeometry& geometry) {
   return box;
 }
 
-ordered_json json(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+ordered_json jsonOf(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 std::string factsOf(const PageGeometry& geometry) {
   const auto [low, high] = boxOf(geometry);
@@ -64,15 +64,15 @@ std::string factsOf(const PageGeometry& geometry) {
   for (const PageChunk& chunk : geometry.chunks) {
     chunks.push_back({{"vertices", chunk.vertices.size()},
                       {"triangles", chunk.indices.size() / 3},
-                      {"low", json(chunk.low)},
-                      {"side", json(chunk.side)},
+                      {"low", jsonOf(chunk.low)},
+                      {"side", jsonOf(chunk.side)},
                       {"largest_radius", chunk.largest_radius_m}});
   }
   return ordered_json{{"shows", geometry.triangles > 0 ? "triangles" : "surfels"},
                       {"vertices", geometry.vertices},
                       {"triangles", geometry.triangles},
                       {"step_m", geometry.step_m},
-                      {"box", {{"low", json(low)}, {"high", json(high)}}},
+                      {"box", {{"low", jsonOf(low)}, {"high", jsonOf(high)}}},
                       {"chunks", chunks}}
       .dump();
 }

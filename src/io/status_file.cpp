@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "number_text.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
@@ -27,7 +28,7 @@ std::string header() {
   return names;
 }
 
-std::string quoted(const std::string& text) {
+std::string quotedCell(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"') out += '"';
@@ -56,15 +57,6 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
-double numberOf(const std::string& text) {
-  std::istringstream in(text);
-  double value = 0;
-  if (!(in >> value) || !in.eof() || !std::isfinite(value)) {
-    throw InputError("'" + text + "' is no number");
-  }
-  return value;
-}
-
 StatusRow parseRow(const std::string& line) {
   const std::vector<std::string> cells = cellsOf(line);
   if (cells.size() != kColumns) {
@@ -78,7 +70,7 @@ StatusRow parseRow(const std::string& line) {
   row.state = cells[3];
   row.outcome = cells[4];
   row.reason = cells[5];
-  const auto number = [&](std::size_t column) { return numberOf(cells[column]); };
+  const auto number = [&](std::size_t column) { return parseNumber(cells[column]); };
   row.T_map_camera.translation() = Eigen::Vector3d(number(6), number(7), number(8));
   const Eigen::Quaterniond q(number(12), number(9), number(10), number(11));
   const auto rotation = rotationOf(q);
@@ -94,7 +86,7 @@ StatusRow parseRow(const std::string& line) {
 void writeRow(std::ostream& out, const StatusRow& row) {
   out << formatStamp(row.stamp_ns) << ',' << (row.has_pose ? 1 : 0) << ','
       << (row.is_provisional ? 1 : 0) << ',' << row.state << ',' << row.outcome << ','
-      << quoted(row.reason);
+      << quotedCell(row.reason);
   const Eigen::Vector3d t = row.T_map_camera.translation();
   const Eigen::Quaterniond q(row.T_map_camera.linear());
   for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) out << ',' << value;

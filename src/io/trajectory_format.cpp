@@ -8,15 +8,16 @@
 #include <sstream>
 #include <utility>
 
+#include "number_text.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::size_t kKittiColumns = 12, kTumColumns = 8;
 
 struct Line {
@@ -39,15 +40,6 @@ std::vector<Line> linesOf(const std::string& path) {
   return lines;
 }
 
-double numberOf(const std::string& word) {
-  std::istringstream text(word);
-  double value = 0;
-  if (!(text >> value) || !text.eof() || !std::isfinite(value)) {
-    throw InputError("'" + word + "' is no number");
-  }
-  return value;
-}
-
 StampedPose kittiPose(const Line& line, std::size_t index) {
   if (line.words.size() != kKittiColumns) {
     throw InputError(std::to_string(line.words.size()) + " numbers, expected 12: a pose's matrix");
@@ -55,7 +47,7 @@ StampedPose kittiPose(const Line& line, std::size_t index) {
   StampedPose pose;
   pose.stamp_ns = static_cast<std::int64_t>(index) * kSecond_ns;
   for (int i = 0; i < 12; ++i) {
-    pose.T_world_camera(i / 4, i % 4) = numberOf(line.words[static_cast<std::size_t>(i)]);
+    pose.T_world_camera(i / 4, i % 4) = parseNumber(line.words[static_cast<std::size_t>(i)]);
   }
   const Eigen::Matrix3d R = pose.T_world_camera.linear();
   const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm();
@@ -78,7 +70,7 @@ StampedPose eurocPose(const Line& line) {
     throw InputError("'" + words[0] + "' is no stamp, expected whole nanoseconds");
   }
   std::array<double, 7> v{};
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = numberOf(words[i + 1]);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = parseNumber(words[i + 1]);
   const auto rotation = rotationOf({v[3], v[4], v[5], v[6]});
   if (!rotation) throw InputError("the quaternion is not of unit length");
   pose.T_world_camera.linear() = *rotation;

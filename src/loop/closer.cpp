@@ -20,8 +20,6 @@ constexpr std::size_t kFernMatches = 2;
 constexpr std::size_t kPlacesLike = 12;
 constexpr int kAtAPlace = 3;
 constexpr double kPlace_m = 1.5;
-// The two directions of a pair must agree within this.
-constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
 FernConfig fernConfig(const LoopConfig& config, const DepthSensor& sensor) {
   FernConfig ferns;
@@ -195,9 +193,7 @@ std::optional<LoopConstraint> LoopCloser::verify(std::int64_t id,
     ++counts_.turned;
     return std::nullopt;
   }
-  const PlaceVerdict back = aligner_.align(to_, from_, T.inverse());
-  const Eigen::Isometry3d circle = T * back.alignment.T_map_camera;
-  if (!back.accepted() || !isWithin(circle, kOneWay_m, kOneWay_rad)) {
+  if (!aligner_.confirms(from_, to_, T)) {
     ++counts_.one_way;
     return std::nullopt;
   }

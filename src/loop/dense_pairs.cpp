@@ -15,8 +15,6 @@ namespace {
 // Of a keyframe, with later ones: each pair is some milliseconds of work, and more pairs hardly add
 // information.
 constexpr std::size_t kPairsOfView = 8;
-// The two directions of a pair must agree within this.
-constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
 
 const KeyframeView* find(const std::vector<const KeyframeView*>& views, int id) {
   const auto found = std::lower_bound(views.begin(), views.end(), id,
@@ -36,10 +34,7 @@ struct PairMeasurer {
     const PlaceVerdict forth = aligner.align(from, to, pair.T_from_to);
     if (!forth.accepted()) return std::nullopt;
     const Eigen::Isometry3d T = forth.alignment.T_map_camera;
-    const PlaceVerdict back = aligner.align(to, from, T.inverse());
-    if (!back.accepted() || !isWithin(T * back.alignment.T_map_camera, kOneWay_m, kOneWay_rad)) {
-      return std::nullopt;
-    }
+    if (!aligner.confirms(from, to, T)) return std::nullopt;
     return PoseConstraint{pair.from, pair.to, T, forth.alignment.covariance, pair.kind};
   }
 };

@@ -18,7 +18,7 @@ constexpr int kTries = 400;
 constexpr float kSigmas = 3.0F;
 constexpr double kLateralSigmas = 4.0;
 constexpr double kLeastSide_m = 0.15;  // of a triangle: smaller ones give no rotation
-constexpr std::uint32_t kMagic = 0x54464650, kVersion = 1;  // "PFFT"
+constexpr std::uint32_t kFeaturesMagic = 0x54464650, kFeaturesVersion = 1;  // "PFFT"
 
 using Pairs = std::vector<std::pair<int, int>>;
 
@@ -160,8 +160,8 @@ FeatureMatch matchFeatures(const Features& first, const Features& second,
 
 std::string toBytes(const Features& features) {
   ByteWriter out;
-  out.put(kMagic);
-  out.put(kVersion);
+  out.put(kFeaturesMagic);
+  out.put(kFeaturesVersion);
   out.put(static_cast<std::uint32_t>(features.size()));
   for (std::size_t i = 0; i < features.size(); ++i) {
     for (int k = 0; k < 3; ++k) out.put(features.points[i][k]);
@@ -172,7 +172,7 @@ std::string toBytes(const Features& features) {
 
 Features featuresFromBytes(const std::string& bytes) {
   ByteReader in(bytes, "features");
-  in.expect(kMagic, kVersion);
+  in.expect(kFeaturesMagic, kFeaturesVersion);
   const auto count = in.get<std::uint32_t>();
   constexpr std::size_t kEach = 3 * sizeof(float) + Features::kDescriptor;
   if (in.left() != count * kEach) in.fail("has not the size that it states");

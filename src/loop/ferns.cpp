@@ -16,7 +16,7 @@ constexpr int kCodes = 16;
 constexpr int kMaxFerns = 100'000;
 constexpr double kMinDepth_m = 0.4;
 constexpr double kLeastGood = 0.1;
-constexpr std::uint32_t kMagic = 0x4E524650, kVersion = 1;  // "PFRN"
+constexpr std::uint32_t kFernsMagic = 0x4E524650, kFernsVersion = 1;  // "PFRN"
 
 }  // namespace
 
@@ -131,8 +131,8 @@ void FernDatabase::store(std::int64_t id, const FernCode& code) {
 
 std::string FernDatabase::toBytes() const {
   ByteWriter out;
-  out.put(kMagic);
-  out.put(kVersion);
+  out.put(kFernsMagic);
+  out.put(kFernsVersion);
   out.put(static_cast<std::int32_t>(config_.count));
   out.put(config_.seed);
   out.put(config_.max_depth_m);
@@ -147,7 +147,7 @@ std::string FernDatabase::toBytes() const {
 
 FernDatabase FernDatabase::fromBytes(const std::string& bytes) {
   ByteReader in(bytes, "ferns");
-  in.expect(kMagic, kVersion);
+  in.expect(kFernsMagic, kFernsVersion);
   FernConfig config;
   config.count = in.get<std::int32_t>();
   config.seed = in.get<std::uint32_t>();

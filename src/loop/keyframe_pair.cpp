@@ -8,6 +8,12 @@
 #include "posefusion/core/static_odds.hpp"
 
 namespace pf {
+namespace {
+
+// The two directions of a pair must agree within this.
+constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
+
+}  // namespace
 
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
                           bool nobody_in_view) {
@@ -93,6 +99,13 @@ PlaceVerdict PairAligner::align(const KeyframePicture& from, const KeyframePictu
   verdict.agreement = compareViews(to.frame, seen_);
   judgePlace(verdict, tracking_);
   return verdict;
+}
+
+bool PairAligner::confirms(const KeyframePicture& from, const KeyframePicture& to,
+                           const Eigen::Isometry3d& T_from_to) {
+  const PlaceVerdict back = align(to, from, T_from_to.inverse());
+  return back.accepted() &&
+         isWithin(T_from_to * back.alignment.T_map_camera, kOneWay_m, kOneWay_rad);
 }
 
 }  // namespace pf

@@ -59,7 +59,7 @@ void writeSurfel(const Wanted& w, const MeasuredSurface::Level& level, const Rig
 }
 
 /// A row of pixels of one level.
-struct Row {
+struct PixelRow {
   int level, v;
 };
 
@@ -68,7 +68,7 @@ struct Row {
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now, const Evidence& evidence,
                           SurfelArrays& surfels) {
-  std::vector<Row> rows;
+  std::vector<PixelRow> rows;
   for (int i = 0; i < evidence.measured.levels(); ++i) {
     for (int v = 0; v < evidence.measured[i].depth_m.rows; ++v) rows.push_back({i, v});
   }

@@ -16,7 +16,7 @@ namespace {
 
 // What is closer is noise of one layer.
 constexpr float kSameFacing = 0.8F;  // cosine
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kSurfelsAtOnce = 4096;
 
 /// Which blocks of a fragment layers are looked for in: those named, and those around them.
 class Region {
@@ -99,7 +99,7 @@ struct StableSurfels {
 /// Marks those of a region that are to go.
 void findYoungerLayers(const StableSurfels& stable, std::vector<char>& doomed) {
   const PointGrid grid(stable.positions);
-  parallelFor(stable.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(stable.indices.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       char& gone = doomed[stable.indices[i]];
       grid.visit(stable.lineOf(i).box(kMostLayer_m, stable.largest_radius), [&](std::size_t k) {

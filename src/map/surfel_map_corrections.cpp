@@ -8,7 +8,7 @@
 namespace pf {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // blocks
+constexpr std::size_t kBlocksAtOnce = 256;  // blocks
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> SurfelMap::takeUp(const SurfelMap& before, SurfelMap&
     if (!blocks_.isShared(i, before.blocks_)) changed.push_back(static_cast<std::uint32_t>(i));
   }
   memory_ += deterministicSum<std::size_t>(
-      before.blocks_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      before.blocks_.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
         std::size_t more = 0;  // modulo 2^64: may be less
         for (std::size_t i = begin; i < end; ++i) {
           const bool is_new = !corrected.blocks_.isShared(i, before.blocks_);

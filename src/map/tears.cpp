@@ -55,9 +55,9 @@ class Hangers {
 };
 
 /// Blocks along one axis: finds those close to one.
-class Row {
+class BlocksAlong {
  public:
-  explicit Row(const SurfelMap& map) : map_(map) {
+  explicit BlocksAlong(const SurfelMap& map) : map_(map) {
     for (const std::uint32_t i : allBlocks(map)) {
       const SurfelBlock& block = map.blocks()[i];
       if (block.surfels.size() == 0) continue;
@@ -117,7 +117,7 @@ std::vector<std::uint32_t> tornBlocks(const SurfelMap& before, const SurfelMap& 
   const Hangers hangers(keyframes_before);
   std::vector<Keyframes> of(now.blocks().size());
   for (std::size_t i = 0; i < of.size(); ++i) of[i] = hangers.of(before.blocks()[i]);
-  const Row row(now);
+  const BlocksAlong row(now);
   std::vector<char> is_torn(of.size(), 0);
   parallelFor(of.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -12,7 +12,7 @@
 namespace pf {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kDiscsAtOnce = 4096;
 // What a block takes: distance and vertex of each corner, and about 1.5 layers of vertices and
 // triangles, in pieces and as a whole.
 constexpr double kBytesPerBlock = 10'000;
@@ -48,7 +48,7 @@ std::size_t countOf(const CellRange& range) {
 /// How many blocks each surfel reaches.
 std::vector<std::uint32_t> blockCounts(const DiscMaker& maker, std::size_t surfels) {
   std::vector<std::uint32_t> counts(surfels, 0);
-  parallelFor(surfels, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(surfels, kDiscsAtOnce, [&](std::size_t begin, std::size_t end) {
     Disc disc;
     CellRange range;
     for (std::size_t i = begin; i < end; ++i) {
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> blockCounts(const DiscMaker& maker, std::size_t surfe
 /// All pairs of surfel and block, block by block.
 std::vector<Entry> entriesOf(const DiscMaker& maker, const std::vector<std::size_t>& first) {
   std::vector<Entry> entries(first.back());
-  parallelFor(first.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(first.size() - 1, kDiscsAtOnce, [&](std::size_t begin, std::size_t end) {
     Disc disc;
     CellRange cells;
     for (std::size_t i = begin; i < end; ++i) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr std::size_t kGrain = 4;
+constexpr std::size_t kBlocksAtOnce = 4;
 
 /// Sums at the corners of a block.
 struct CornerSums {
@@ -55,7 +55,7 @@ DistanceField discDistance(const SurfelArrays& surfels, const DiscBlocks& blocks
                            const MeshConfig& config) {
   const DiscMaker maker(surfels, config);
   DistanceField field(blocks.lattice);
-  parallelFor(blocks.lattice.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(blocks.lattice.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     CornerSums sums;
     for (std::size_t i = begin; i < end; ++i) {
       addDiscs(maker, blocks, i, sums, &field.values[i * BlockLattice::kCorners]);

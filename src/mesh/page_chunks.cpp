@@ -100,9 +100,9 @@ void putVertices(PageChunk& chunk, const std::vector<Vector3f>& points) {
 }
 
 /// Makes chunks of triangles of one mesh.
-class MeshPieces {
+class ChunkMaker {
  public:
-  explicit MeshPieces(const TriangleMesh& mesh) : mesh_(mesh), places_(mesh.size()) {}
+  explicit ChunkMaker(const TriangleMesh& mesh) : mesh_(mesh), places_(mesh.size()) {}
 
   bool isSmall(const std::uint32_t* begin, const std::uint32_t* end) {
     ++round_;
@@ -183,7 +183,7 @@ std::vector<PageChunk> pageChunks(const TriangleMesh& mesh) {
   for (const auto& t : mesh.triangles) {
     centers.push_back((mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3);
   }
-  MeshPieces pieces(mesh);
+  ChunkMaker pieces(mesh);
   std::vector<PageChunk> chunks;
   Cutter(
       centers, [&](const auto* begin, const auto* end) { return pieces.isSmall(begin, end); },

@@ -13,7 +13,7 @@
 namespace pf {
 namespace {
 
-constexpr double kMostCell_m = 1.0;
+constexpr double kCoarsest_m = 1.0;
 constexpr double kFirstVoxel_m = 0.01;
 constexpr double kSpare = 1.03;  // what is cut at the borders of chunks is there twice
 
@@ -34,7 +34,7 @@ double longer(double step_m, std::size_t bytes, std::size_t most_bytes) {
 }
 
 void requireRoom(double step_m, std::size_t most_bytes) {
-  if (step_m <= kMostCell_m) return;
+  if (step_m <= kCoarsest_m) return;
   throw InputError("page: has room for " + std::to_string(most_bytes) +
                    " bytes of the map, expected enough for cells of 1 m");
 }

@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 constexpr int kSide = BlockLattice::kSide, kPatch = kSide + 1;
-constexpr std::size_t kGrain = 8;
+constexpr std::size_t kNetBlocksAtOnce = 8;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 enum class Layer { after, before };
@@ -176,7 +176,7 @@ SurfaceNet surfaceNet(const DistanceField& field) {
   SurfaceNet net;
   net.place.assign(field.values.size(), SurfaceNet::kNoPlace);
   std::vector<std::vector<Vector3f>> points(blocks);
-  parallelFor(blocks, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(blocks, kNetBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       points[i] = verticesOf(field, i, &net.place[i * BlockLattice::kCorners]);
     }
@@ -188,7 +188,7 @@ SurfaceNet surfaceNet(const DistanceField& field) {
   }
   net.positions = joined(points);
   std::vector<std::vector<std::array<std::uint32_t, 3>>> triangles(blocks);
-  parallelFor(blocks, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(blocks, kNetBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) triangles[i] = trianglesOf(field, i, net);
   });
   net.triangles = joined(triangles);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr std::size_t kGrain = 4;
+constexpr std::size_t kPaintedAtOnce = 4;
 constexpr float kSameSide = 0.2F;  // 78 degrees
 
 /// Sums of the surfels at one vertex.
@@ -117,7 +117,7 @@ PaintedVertices paint(const SurfelArrays& surfels, const DiscBlocks& blocks,
   out.colors.resize(net.positions.size());
   out.seen.resize(net.positions.size());
   Painter painter(surfels, blocks, config, net, out);
-  parallelFor(blocks.lattice.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(blocks.lattice.size(), kPaintedAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<VertexSums> sums;
     for (std::size_t i = begin; i < end; ++i) painter.paint(i, sums);
   });

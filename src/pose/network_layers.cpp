@@ -17,7 +17,7 @@ namespace {
 namespace dnn = cv::dnn;
 
 constexpr int kLanes = 16;
-constexpr std::size_t kChannelsAtOnce = 2;
+constexpr std::size_t kPlanesAtOnce = 2;
 
 /// Sums of (x - origin) and of its square, lane by lane: the order of the additions is fixed.
 POSEFUSION_SIMD_CLONES
@@ -71,7 +71,7 @@ class ChannelNormalization : public dnn::Layer {
     const int channels = in[0].size[1];
     const auto planes = static_cast<std::size_t>(in[0].size[0] * channels);
     const int count = static_cast<int>(in[0].total() / planes);
-    parallelFor(planes, kChannelsAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallelFor(planes, kPlanesAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t plane = begin; plane < end; ++plane) {
         const std::size_t offset = plane * static_cast<std::size_t>(count);
         normalize(in[0].ptr<float>() + offset, count, static_cast<int>(plane) % channels,

@@ -72,7 +72,7 @@ std::vector<Vote> collectVotes(const PersonMaps& maps, const cv::Mat& small_m) {
 }
 
 /// A cell of a joint's map that is above its neighbours.
-bool isPeak(const cv::Mat& map, int x, int y) {
+bool isJointPeak(const cv::Mat& map, int x, int y) {
   const float value = valueAt(map, x, y);
   if (!(value > kMinJoint)) return false;
   for (int v = std::max(0, y - 1); v <= std::min(map.rows - 1, y + 1); ++v) {
@@ -85,7 +85,7 @@ bool isPeak(const cv::Mat& map, int x, int y) {
 }
 
 /// Centre of gravity of the 3x3 cells around a peak, in pixels of the input.
-cv::Point2f centroid(const cv::Mat& map, int x, int y) {
+cv::Point2f jointCentroid(const cv::Mat& map, int x, int y) {
   double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
   for (int v = std::max(0, y - 1); v <= std::min(map.rows - 1, y + 1); ++v) {
     for (int u = std::max(0, x - 1); u <= std::min(map.cols - 1, x + 1); ++u) {
@@ -120,14 +120,14 @@ void addJoints(const PersonMaps& maps, const cv::Mat& small_m, const InputCamera
     const cv::Mat& map = maps.joints[j];
     for (int y = 0; y < map.rows; ++y) {
       for (int x = 0; x < map.cols; ++x) {
-        if (!isPeak(map, x, y)) continue;
+        if (!isJointPeak(map, x, y)) continue;
         const float z = nearestDepth(small_m, 4 * x, 4 * y, 4);
         const int index = personOf(camera, groups, voteOf(maps, x, y), z);
         if (index < 0) continue;
         Keypoint& joint = groups[static_cast<std::size_t>(index)].person.joints[j];
         const float p = std::min(valueAt(map, x, y), 1.0F);
         if (p <= joint.p) continue;
-        const cv::Point2f at = camera.grid.toImage(centroid(map, x, y));
+        const cv::Point2f at = camera.grid.toImage(jointCentroid(map, x, y));
         joint = {at.x, at.y, p};
       }
     }

@@ -9,7 +9,7 @@
 namespace pf {
 namespace {
 
-constexpr double kKept_s = 10.0, kMostCarriedOn_s = 0.02;
+constexpr double kImuKept_s = 10.0, kImuCarriedOn_s = 0.02;
 // Less weight than gravity for so long: a step while walking is shorter.
 constexpr double kFreeFall_s = 0.08;
 constexpr double kBiasMemory_s = 20.0, kMostBias_rad_s = 0.2;
@@ -27,7 +27,7 @@ std::string ImuTrack::add(const ImuSample& sample) {
            formatStamp(samples_.back().stamp_ns);
   }
   samples_.push_back(sample);
-  while (secondsBetween(samples_.front().stamp_ns, sample.stamp_ns) > kKept_s) {
+  while (secondsBetween(samples_.front().stamp_ns, sample.stamp_ns) > kImuKept_s) {
     samples_.pop_front();
   }
   watch(sample);
@@ -55,7 +55,7 @@ std::optional<Eigen::Vector3d> ImuTrack::rateAt(std::int64_t stamp_ns) const {
   if (after == samples_.begin()) return after->rate_rad_s;
   const ImuSample& a = *(after - 1);
   if (after == samples_.end()) {
-    if (secondsBetween(a.stamp_ns, stamp_ns) > kMostCarriedOn_s) return std::nullopt;
+    if (secondsBetween(a.stamp_ns, stamp_ns) > kImuCarriedOn_s) return std::nullopt;
     return a.rate_rad_s;
   }
   const double part =

@@ -9,7 +9,7 @@
 namespace pf {
 namespace {
 
-constexpr double kKept_s = 10.0, kMostCarriedOn_s = 0.05;
+constexpr double kOdometryKept_s = 10.0, kOdometryCarriedOn_s = 0.05;
 
 }  // namespace
 
@@ -20,7 +20,8 @@ std::string OdometryTrack::add(const StampedPose& pose) {
            formatStamp(poses_.back().stamp_ns);
   }
   poses_.push_back(pose);
-  while (secondsBetween(poses_.front().stamp_ns, pose.stamp_ns) > kKept_s) poses_.pop_front();
+  while (secondsBetween(poses_.front().stamp_ns, pose.stamp_ns) > kOdometryKept_s)
+    poses_.pop_front();
   return {};
 }
 
@@ -32,7 +33,7 @@ std::optional<Eigen::Isometry3d> OdometryTrack::at(std::int64_t stamp_ns) const 
   if (is_beyond || after == poses_.begin()) after = is_beyond ? after - 1 : after + 1;
   const StampedPose &a = *(after - 1), &b = *after;
   if (secondsBetween(a.stamp_ns, b.stamp_ns) > config_.odometry_max_gap_s) return std::nullopt;
-  if (is_beyond && secondsBetween(b.stamp_ns, stamp_ns) > kMostCarriedOn_s) return std::nullopt;
+  if (is_beyond && secondsBetween(b.stamp_ns, stamp_ns) > kOdometryCarriedOn_s) return std::nullopt;
   return poseBetween(a, b, stamp_ns);
 }
 

@@ -15,7 +15,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr int kQueue = 1000;
+constexpr int kLoopQueue = 1000;
 constexpr std::chrono::milliseconds kLook(50);  // how often a closer that goes is noticed
 constexpr char kGone[] =
     "no loop closer (nodelet posefusion/loop_closer) is loaded: loops are not closed, and a lost "
@@ -28,8 +28,9 @@ CloserLink::CloserLink(const ros::NodeHandle& handle, double timeout_s)
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s))) {
   ros::NodeHandle own(handle);
   own.setCallbackQueue(&queue_);
-  answer_subscriber_ = own.subscribe(topics::kLoopConstraint, kQueue, &CloserLink::onAnswer, this);
-  question_publisher_ = own.advertise<LoopQuestionMessage>(topics::kKeyframe, kQueue);
+  answer_subscriber_ =
+      own.subscribe(topics::kLoopConstraint, kLoopQueue, &CloserLink::onAnswer, this);
+  question_publisher_ = own.advertise<LoopQuestionMessage>(topics::kKeyframe, kLoopQueue);
 }
 
 CloserLink::~CloserLink() { answer_subscriber_.shutdown(); }

@@ -21,7 +21,7 @@ namespace {
 constexpr auto kLookPeriod = std::chrono::milliseconds(50);
 constexpr int kReachTimeout_ms = 200;
 constexpr std::chrono::duration<double> kLookPause{0.1};  // while the other machine is away
-constexpr std::chrono::duration<double> kFirstPause{2.0}, kLongestPause{10.0};
+constexpr std::chrono::duration<double> kFirstWait{2.0}, kLongestWait{10.0};
 
 /// A TCP connection comes about within the time; it is closed at once.
 bool connects(const addrinfo& address) {
@@ -84,7 +84,7 @@ bool RenewalClock::looked(Time now, bool reachable) {
     return false;
   }
   if (pause_ > pause_.zero() && now - renewed_ < pause_) return false;
-  pause_ = pause_ == pause_.zero() ? kFirstPause : std::min(2 * pause_, kLongestPause);
+  pause_ = pause_ == pause_.zero() ? kFirstWait : std::min(2 * pause_, kLongestWait);
   renewed_ = now;
   return true;
 }

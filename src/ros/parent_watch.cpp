@@ -11,7 +11,7 @@ namespace posefusion_ros {
 namespace {
 
 constexpr std::chrono::seconds kSilent(2);
-constexpr int kQueue = 100;
+constexpr int kTransformQueue = 100;
 
 }  // namespace
 
@@ -55,10 +55,10 @@ std::string ParentWatch::rootAbove(const std::string& child, const std::string& 
 
 ListeningParentWatch::ListeningParentWatch(ros::NodeHandle& handle)
     : moving_(handle.subscribe<tf2_msgs::TFMessage>(
-          "/tf", kQueue,
+          "/tf", kTransformQueue,
           boost::function<void(const Event&)>([this](const Event& e) { listen(e, false); }))),
       fixed_(handle.subscribe<tf2_msgs::TFMessage>(
-          "/tf_static", kQueue,
+          "/tf_static", kTransformQueue,
           boost::function<void(const Event&)>([this](const Event& e) { listen(e, true); }))) {}
 
 void ListeningParentWatch::listen(const Event& event, bool is_static) {

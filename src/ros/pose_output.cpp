@@ -16,7 +16,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr int kQueue = 10;
+constexpr int kPoseQueue = 10;
 // The path keeps ten poses a second: a whole day stays small enough to be sent.
 const ros::Duration kPathStep(0.1);
 
@@ -54,12 +54,12 @@ PoseOutputSettings readPoseOutput(Parameters& parameters, bool lossless) {
 
 PoseOutput::PoseOutput(ros::NodeHandle& handle, const PoseOutputSettings& settings)
     : settings_(settings),
-      odometry_(handle.advertise<nav_msgs::Odometry>(topics::kOdometry, kQueue)),
-      pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kQueue)),
+      odometry_(handle.advertise<nav_msgs::Odometry>(topics::kOdometry, kPoseQueue)),
+      pose_(handle.advertise<geometry_msgs::PoseStamped>(topics::kPose, kPoseQueue)),
       pose_with_covariance_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>(
-          topics::kPoseWithCovariance, kQueue)),
+          topics::kPoseWithCovariance, kPoseQueue)),
       provisional_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>(
-          topics::kProvisionalPose, kQueue)),
+          topics::kProvisionalPose, kPoseQueue)),
       path_publisher_(handle.advertise<nav_msgs::Path>(topics::kPath, 1, true)) {
   if (!settings.base_frame.empty() || !settings.odom_frame.empty()) {
     lookup_ = std::make_unique<ListeningLookup>(settings.lookup);

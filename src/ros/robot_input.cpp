@@ -10,7 +10,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr std::uint32_t kQueue = 1000;
+constexpr std::uint32_t kSensorQueue = 1000;
 // Samples that are not used, since no frame comes, are not kept for ever.
 constexpr std::size_t kMostKept = 10000;
 // A head turns little in so long; no frame waits for a transform.
@@ -85,11 +85,11 @@ RobotInput::RobotInput(ros::NodeHandle& handle, const RobotInputSettings& settin
   lookup.max_age_s = kOldestMount_s;
   lookup_ = std::make_unique<ListeningLookup>(lookup);
   if (hears_imu) {
-    imu_subscriber_ = handle.subscribe(settings.imu_topic, kQueue, &RobotInput::onImu, this);
+    imu_subscriber_ = handle.subscribe(settings.imu_topic, kSensorQueue, &RobotInput::onImu, this);
   }
   if (hears_odometry) {
     odometry_subscriber_ =
-        handle.subscribe(settings.odometry_topic, kQueue, &RobotInput::onOdometry, this);
+        handle.subscribe(settings.odometry_topic, kSensorQueue, &RobotInput::onOdometry, this);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr int kQueue = 1000;
+constexpr int kStatusQueue = 1000;
 constexpr double kTextHeight_m = 0.2, kAboveCamera_m = 0.4;
 constexpr double kTextPeriod_s = 0.2;
 
@@ -57,7 +57,7 @@ visualization_msgs::Marker toStateText(const TrackingStatusMsg& status, double l
 void StatusOutput::advertise(ros::NodeHandle& handle) {
   const std::lock_guard<std::mutex> lock(mutex_);
   text_ = handle.advertise<visualization_msgs::Marker>(topics::kStateText, 1, true);
-  status_ = handle.advertise<TrackingStatusMsg>(topics::kStatus, kQueue);
+  status_ = handle.advertise<TrackingStatusMsg>(topics::kStatus, kStatusQueue);
 }
 
 void StatusOutput::publish(const TrackingStatusMsg& status) {

@@ -10,7 +10,8 @@
 namespace pf {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 360, kMargin = 24, kTitle = 30, kBar = 20, kScale = 90;
+constexpr int kFieldWidth = 480, kFieldHeight = 360, kFieldMargin = 24, kTitle = 30, kBar = 20,
+              kScale = 90;
 constexpr double kAt_m = 2.0;
 
 /// Blue for -1, white for 0, red for 1.
@@ -43,25 +44,25 @@ void write(cv::Mat& picture, const std::string& text, const cv::Point& at) {
 
 void drawField(const DepthField& field, const std::string& title, double scale, int left,
                cv::Mat& picture) {
-  for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) {
+  for (int v = 0; v < kFieldHeight; ++v) {
+    for (int u = 0; u < kFieldWidth; ++u) {
       picture.at<cv::Vec3b>(kTitle + v, left + u) =
-          colorOf(errorOf(field, (u + 0.5) / kWidth, (v + 0.5) / kHeight) / scale);
+          colorOf(errorOf(field, (u + 0.5) / kFieldWidth, (v + 0.5) / kFieldHeight) / scale);
     }
   }
   write(picture, title, {left, kTitle - 10});
 }
 
 void drawBar(double scale, int left, cv::Mat& picture) {
-  for (int v = 0; v < kHeight; ++v) {
-    const cv::Vec3b color = colorOf(1.0 - 2.0 * v / (kHeight - 1));
+  for (int v = 0; v < kFieldHeight; ++v) {
+    const cv::Vec3b color = colorOf(1.0 - 2.0 * v / (kFieldHeight - 1));
     for (int u = 0; u < kBar; ++u) picture.at<cv::Vec3b>(kTitle + v, left + u) = color;
   }
   for (const double part : {1.0, 0.5, 0.0, -0.5, -1.0}) {
     char text[32];
     std::snprintf(text, sizeof text, "%+.1f mm", 1000.0 * scale * part);
     write(picture, text,
-          {left + kBar + 4, kTitle + static_cast<int>((1 - part) / 2 * kHeight) + 4});
+          {left + kBar + 4, kTitle + static_cast<int>((1 - part) / 2 * kFieldHeight) + 4});
   }
 }
 
@@ -70,11 +71,13 @@ void drawBar(double scale, int left, cv::Mat& picture) {
 cv::Mat drawFields(const DepthField& field, const std::optional<DepthField>& truth) {
   const double scale = std::max({1e-4, largest(field), truth ? largest(truth->centred()) : 0.0});
   const int pictures = truth ? 2 : 1;
-  cv::Mat picture(kTitle + kHeight + kMargin, pictures * (kWidth + kMargin) + kBar + kScale,
-                  CV_8UC3, cv::Scalar::all(255));
+  cv::Mat picture(kTitle + kFieldHeight + kFieldMargin,
+                  pictures * (kFieldWidth + kFieldMargin) + kBar + kScale, CV_8UC3,
+                  cv::Scalar::all(255));
   drawField(field, "measured depth at 2 m is too far by: estimate", scale, 0, picture);
-  if (truth) drawField(truth->centred(), "truth (mean removed)", scale, kWidth + kMargin, picture);
-  drawBar(scale, pictures * (kWidth + kMargin), picture);
+  if (truth)
+    drawField(truth->centred(), "truth (mean removed)", scale, kFieldWidth + kFieldMargin, picture);
+  drawBar(scale, pictures * (kFieldWidth + kFieldMargin), picture);
   return picture;
 }
 

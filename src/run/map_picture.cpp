@@ -10,8 +10,8 @@
 namespace pf {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
+constexpr int kMapWidth = 640;
+constexpr int kMapHeight = 480;
 const cv::Scalar kBackground(255, 255, 255);
 const cv::Scalar kPathColor(220, 20, 60);
 
@@ -41,11 +41,11 @@ Eigen::AlignedBox3d boundsOf(const SurfelArrays& s, const Trajectory& trajectory
 
 PinholeCamera outsideCamera() {
   PinholeCamera camera;
-  camera.width = kWidth;
-  camera.height = kHeight;
+  camera.width = kMapWidth;
+  camera.height = kMapHeight;
   camera.fx = camera.fy = 620.0;
-  camera.cx = 0.5 * (kWidth - 1);
-  camera.cy = 0.5 * (kHeight - 1);
+  camera.cx = 0.5 * (kMapWidth - 1);
+  camera.cy = 0.5 * (kMapHeight - 1);
   return camera;
 }
 
@@ -119,8 +119,8 @@ cv::Mat drawMap(const SurfelMap& map, const Trajectory& trajectory, const Pinhol
   std::vector<cv::Mat> pictures = {drawFromOutside(stable, trajectory, lookAt(box, down, ahead)),
                                    drawFromOutside(stable, trajectory, lookAt(box, slanted, -down)),
                                    render(stable, camera, trajectory.back().T_world_camera)};
-  cv::resize(pictures[2], pictures[2], {camera.width * kHeight / camera.height, kHeight}, 0, 0,
-             cv::INTER_AREA);
+  cv::resize(pictures[2], pictures[2], {camera.width * kMapHeight / camera.height, kMapHeight}, 0,
+             0, cv::INTER_AREA);
   cv::Mat all;
   cv::hconcat(pictures, all);
   return all;

@@ -11,9 +11,9 @@ namespace pf {
 namespace {
 
 constexpr int kSize = 900;
-constexpr int kMargin = 70;
-const cv::Scalar kTruth(120, 120, 120), kEstimate(20, 90, 220), kError(220, 30, 30);
-const cv::Scalar kInk(40, 40, 40), kGrid(228, 228, 228);
+constexpr int kPlotMargin = 70;
+const cv::Scalar kTruthColor(120, 120, 120), kEstimateColor(20, 90, 220), kError(220, 30, 30);
+const cv::Scalar kTextColor(40, 40, 40), kGrid(228, 228, 228);
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -29,13 +29,13 @@ class Canvas {
     across = std::min(axes[0], axes[1]);
     upward = std::max(axes[0], axes[1]);
     low_ = {box.min()[across], box.min()[upward]};
-    scale_ = (kSize - 2 * kMargin) / std::max(1e-3, size[axes[0]]);
+    scale_ = (kSize - 2 * kPlotMargin) / std::max(1e-3, size[axes[0]]);
   }
 
   /// In sixteenths of a pixel, as the anti-aliased drawing functions want it.
   cv::Point at(const Eigen::Vector3d& p) const {
-    const double u = kMargin + (p[across] - low_.x()) * scale_;
-    const double v = kSize - kMargin - (p[upward] - low_.y()) * scale_;
+    const double u = kPlotMargin + (p[across] - low_.x()) * scale_;
+    const double v = kSize - kPlotMargin - (p[upward] - low_.y()) * scale_;
     const auto fixed = [](double x) { return cvRound(std::clamp(x, -1e6, 1e6) * 16); };
     return {fixed(u), fixed(v)};
   }
@@ -62,19 +62,20 @@ class Canvas {
       step *= 5;
     else if (wanted / step > 2)
       step *= 2;
-    const double end = (kSize - 2 * kMargin) / scale_;
+    const double end = (kSize - 2 * kPlotMargin) / scale_;
     for (const int axis : {0, 1}) {
       for (double x = std::ceil(low_[axis] / step) * step; x <= low_[axis] + end; x += step) {
         const int offset = cvRound((x - low_[axis]) * scale_);
         char label[32];
         std::snprintf(label, sizeof(label), "%.3g", std::abs(x) < 1e-9 ? 0.0 : x);
-        const int place = axis == 0 ? kMargin + offset : kSize - kMargin - offset;
-        const cv::Point from = axis == 0 ? cv::Point(place, kMargin) : cv::Point(kMargin, place);
-        const cv::Point to =
-            axis == 0 ? cv::Point(place, kSize - kMargin) : cv::Point(kSize - kMargin, place);
+        const int place = axis == 0 ? kPlotMargin + offset : kSize - kPlotMargin - offset;
+        const cv::Point from =
+            axis == 0 ? cv::Point(place, kPlotMargin) : cv::Point(kPlotMargin, place);
+        const cv::Point to = axis == 0 ? cv::Point(place, kSize - kPlotMargin)
+                                       : cv::Point(kSize - kPlotMargin, place);
         cv::line(image, from, to, kGrid, 1);
-        text(label, axis == 0 ? place - 12 : 12, axis == 0 ? kSize - kMargin + 22 : place + 5,
-             kInk);
+        text(label, axis == 0 ? place - 12 : 12, axis == 0 ? kSize - kPlotMargin + 22 : place + 5,
+             kTextColor);
       }
     }
   }
@@ -105,20 +106,20 @@ cv::Mat plotTrajectories(const Trajectory& truth, const std::vector<PosePair>& p
   all.insert(all.end(), estimated_path.begin(), estimated_path.end());
   Canvas canvas(all);
   canvas.grid();
-  canvas.path(true_path, kTruth, 2);
+  canvas.path(true_path, kTruthColor, 2);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     canvas.line(pairs[i].truth.T_world_camera.translation(), estimated_path[i], kError);
   }
-  canvas.path(estimated_path, kEstimate, 2);
-  canvas.text("truth", kMargin, 24, kTruth);
-  canvas.text("estimate", kMargin + 70, 24, kEstimate);
-  canvas.text("difference", kMargin + 165, 24, kError);
+  canvas.path(estimated_path, kEstimateColor, 2);
+  canvas.text("truth", kPlotMargin, 24, kTruthColor);
+  canvas.text("estimate", kPlotMargin + 70, 24, kEstimateColor);
+  canvas.text("difference", kPlotMargin + 165, 24, kError);
   const auto error = absoluteError(pairs, alignment);
   char text[128];
   std::snprintf(text, sizeof(text),
                 "ATE %.4f m RMSE, %.4f m max, %zu poses; axes %c and %c in metres", error.rmse,
                 error.max, error.count, "xyz"[canvas.across], "xyz"[canvas.upward]);
-  canvas.text(text, kMargin, 48, kInk);
+  canvas.text(text, kPlotMargin, 48, kTextColor);
   return canvas.image;
 }
 

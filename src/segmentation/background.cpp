@@ -9,10 +9,9 @@
 namespace pf {
 namespace {
 
-constexpr float kMinDepth_m = 0.1F;  // nearer points of a view do not count
-constexpr int kMinKnown = 4;      // of the 9 pixels looked at, for a verdict other than agreement
-constexpr float kClearly = 2.0F;  // tolerances between surfaces that are surely not the same
-constexpr std::size_t kRowsAtOnce = 8;
+constexpr float kMinViewDepth_m = 0.1F;  // nearer points of a view do not count
+constexpr int kMinKnown = 4;       // of the 9 pixels looked at, for a verdict other than agreement
+constexpr float kClearly = 2.0F;   // tolerances between surfaces that are surely not the same
 constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is predicted from
 
 /// Difference of depth that noise, the map's error and the pose's explain, metres.
@@ -33,7 +32,7 @@ struct Projection {
 Background comparePoint(const ModelView& view, const DepthSensor& sensor,
                         const Projection& projection, const Eigen::Vector3f& point, int reach_px) {
   const Eigen::Vector3f q = projection.rotation * point + projection.translation;
-  if (q.z() <= kMinDepth_m) return Background::unknown;
+  if (q.z() <= kMinViewDepth_m) return Background::unknown;
   const float inverse_z = 1.0F / q.z();
   const int u = cvRound(projection.fx * q.x() * inverse_z + projection.cx);
   const int v = cvRound(projection.fy * q.y() * inverse_z + projection.cy);

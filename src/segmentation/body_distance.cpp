@@ -10,10 +10,9 @@
 namespace pf {
 namespace {
 
-constexpr float kMinDepth_m = 0.2F;          // nearer parts of a capsule cover no more of the view
+constexpr float kMinPartDepth_m = 0.2F;      // nearer parts of a capsule cover no more of the view
 constexpr float kReachTowardsCamera = 0.5F;  // of a capsule's reach, where its bounds are taken
 constexpr float kMinLength2_m2 = 1e-8F;      // a shorter capsule is a point
-constexpr std::size_t kRowsAtOnce = 16;
 
 /// Squared distance of points to the line of a capsule.
 struct SegmentDistance {
@@ -41,7 +40,7 @@ cv::Rect boundsOf(const Capsule& capsule, float reach_m, const SceneGrid& grid) 
   float left = kFar, right = -kFar, top = kFar, bottom = -kFar;
   const float step_x = grid.spacing, step_y = grid.ray_y[grid.cols] - grid.ray_y[0];
   for (const Eigen::Vector3f& p : {capsule.from, capsule.to}) {
-    const float z = std::max(kMinDepth_m, p.z() - kReachTowardsCamera * reach_m);
+    const float z = std::max(kMinPartDepth_m, p.z() - kReachTowardsCamera * reach_m);
     const float col = (p.x() / p.z() - grid.ray_x[0]) / step_x;
     const float row = (p.y() / p.z() - grid.ray_y[0]) / step_y;
     left = std::min(left, col - reach_m / z / step_x);

@@ -24,8 +24,6 @@ constexpr float kColorSpread = 900.0F;  // square of a colour difference that ma
 constexpr float kColorlessEdge = 0.4F;  // part of the smoothness that colour does not touch
 constexpr float kMinReach = 2.5F;       // of the length scale, in spacings of neighbours there
 
-constexpr std::size_t kRowsAtOnce = 8;
-
 /// Cells that cannot be a person stay out of the graph: they only pull on their neighbours.
 bool isInGraph(float unary) { return unary > -kCertain; }
 

@@ -11,8 +11,7 @@
 namespace pf {
 namespace {
 
-constexpr float kFarOutside_px = 1e6F;  // still a whole number
-constexpr std::size_t kRowsAtOnce = 16;
+constexpr float kFarOutside_px = 1e6F;   // still a whole number
 constexpr std::size_t kMaxDepths = 128;  // of a median
 
 /// The depth of a block: the valid pixel nearest to its centre. A mean would mix person and wall.

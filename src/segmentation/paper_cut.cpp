@@ -11,7 +11,6 @@
 namespace pf {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 4;
 // A longer edge would weigh less than half a step of GraphCut's weights: it is left out.
 constexpr float kLongestEdge = 2.5F;  // in units of sigma
 

@@ -15,7 +15,6 @@ constexpr float kDenied = 0.25F;
 constexpr float kMostFor = 4.0F, kMostAgainst = 1.5F;  // log-odds
 constexpr float kMostAgainstUnshown = 0.3F;            // of people that the mask does not show
 constexpr float kFloor = 0.004F;                       // of a probability: a step of the mask
-constexpr std::size_t kRowsAtOnce = 16;
 
 /// Value between cells, the border repeated; pixel centres at integers.
 float bilinear(const cv::Mat& bytes, const cv::Point2f& at) {

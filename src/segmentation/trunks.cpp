@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<Joint, 4> kCorners = {Joint::right_shoulder, Joint::left_shoulder,
                                            Joint::left_hip, Joint::right_hip};
-constexpr int kMedianReach = 1;        // cells around a joint whose median depth is taken
+constexpr int kJointReach = 1;         // cells around a joint whose median depth is taken
 constexpr float kMaxSpread_m = 0.30F;  // of the joints in depth
 constexpr float kMaxOff_m = 0.15F;     // of a cell from the mean of the joints
 constexpr float kBeyondJoints = 1.2F;  // the trunk is larger by this: joints lie inside the body
@@ -32,7 +32,7 @@ Trunk trunkOf(const Person& person, const SceneGrid& grid, const std::vector<Fla
     const Keypoint& k = person.joints[static_cast<std::size_t>(joint)];
     const int cell = k.p > 0.0F ? grid.cellAt(k.u, k.v) : -1;
     if (cell < 0 || flatness[cell] != Flatness::none) return {};
-    const float depth = medianDepth(grid, cell, kMedianReach);
+    const float depth = medianDepth(grid, cell, kJointReach);
     if (depth <= 0.0F) return {};
     nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);

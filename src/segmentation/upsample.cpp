@@ -17,7 +17,6 @@ constexpr float kDepthGap_m = 0.015F, kDepthGapPerMetre = 0.01F, kMaxDepthBadnes
 // Colour, where the cell has no depth: the squared difference that counts 1, and the most.
 constexpr float kColorSquare = 1200.0F, kMaxColorBadness = 8.0F;
 constexpr float kNoDepthBadness = 4.0F;
-constexpr std::size_t kRowsAtOnce = 8;
 
 /// The pixels of one block, as arrays for the kernel.
 struct BlockPixels {

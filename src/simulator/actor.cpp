@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/actor.hpp"
+#include "simulator/easing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@ namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
-
-Vector2d direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 /// Moves an amount towards what is wanted, within `seconds` from 0 to 1.
 void approach(double& amount, double wanted, double seconds) {

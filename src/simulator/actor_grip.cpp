@@ -4,16 +4,13 @@
 #include <cmath>
 
 #include "simulator/actor.hpp"
+#include "simulator/easing.hpp"
 
 namespace pf::simulator {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
-
-Vector2d direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simulator/actor.hpp"
+#include "simulator/easing.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -10,8 +11,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kDoubleSupport_s = 0.07;
-
-double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
 
 /// Faster walkers take quicker steps.
 double swingTime(double speed) { return std::clamp(0.52 - 0.10 * speed, 0.34, 0.5); }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "simulator/actor.hpp"
+#include "simulator/easing.hpp"
 
 namespace pf::simulator {
 namespace {
@@ -17,8 +18,6 @@ constexpr double kBelly_m = 0.17;       // from the body to the near side of wha
 constexpr double kHandOnDoor_m = 0.62;  // the hand lets a handle go that is farther away
 constexpr double kWalk_m_s = 0.9;       // to a thing
 constexpr int kSides = 16;              // from which a thing may be reached
-
-Vector2d direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 double directionTo(const Vector2d& to, const Vector2d& from) {
   const Vector2d d = to - from;

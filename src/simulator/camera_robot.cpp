@@ -4,6 +4,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "simulator/camera_path.hpp"
+#include "simulator/easing.hpp"
 #include "simulator/random.hpp"
 #include "simulator/robot_plan.hpp"
 
@@ -23,11 +24,6 @@ constexpr double kOnset_s = 0.02;  // of what rings through the body
 /// How quickly a drop is stopped, so that there is no jump of the speed.
 double stopOf(const Fall& fall) { return 0.5 * kCrush / (1.0 - kCrush) * fall.drop_s; }
 
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 /// A damped swing that begins softly.
 double ringing(double since_s, double decay_s, double rad_s) {
   return (1.0 - std::exp(-since_s / kOnset_s)) * std::exp(-since_s / decay_s) *
@@ -46,7 +42,7 @@ class RobotPath : public CameraPath {
     const double since = std::clamp(t - piece.start_s, 0.0, piece.length_s);
     if (piece.kind == Piece::Kind::fall) {
       const double still = std::min(since / kStagger_s, (piece.length_s - since) / kGetUp_s);
-      return fallen(piece, since) * balance(t, 1.0 - smooth(still));
+      return fallen(piece, since) * balance(t, 1.0 - smooth(std::clamp(still, 0.0, 1.0)));
     }
     double part = since / piece.length_s;
     // Walking starts and ends softly, over one step.
@@ -110,7 +106,7 @@ class RobotPath : public CameraPath {
     const double strength = std::min({1.0, phase + 0.3, count - phase + 0.3});
     const double side = std::fmod(piece.steps_before + step, 2.0) < 0.5 ? 1.0 : -1.0;
     // Standing still at both ends of the way, with the weight on one foot in between.
-    const double ends = smooth(std::min(phase, count - phase) / 0.5);
+    const double ends = smooth(std::clamp(std::min(phase, count - phase) / 0.5, 0.0, 1.0));
     const double arc = std::sin(M_PI * within);
     Vector3d move =
         strength * Vector3d(side * spec_.sway_m * arc, -spec_.bounce_m * arc * arc, 0.0);
@@ -176,7 +172,7 @@ class RobotPath : public CameraPath {
       addBumps(piece.fall, since - kStagger_s, T);
       return T;
     }
-    const double rise = smooth((impact - piece.fall.lie_s) / kGetUp_s);
+    const double rise = smooth(std::clamp((impact - piece.fall.lie_s) / kGetUp_s, 0.0, 1.0));
     const double crushed = 1.0 - 0.9 * kCrush * std::exp(-impact / stopOf(piece.fall));
     Isometry3d T = mix(mix(up, down, crushed), again, rise);
     const double hop = std::sin(14.0 * impact);

@@ -13,10 +13,6 @@ namespace {
 
 constexpr float kTurn_rad = 6.2831853F;
 
-float random(Dice& dice, double low, double high) {
-  return static_cast<float>(dice.between(low, high));
-}
-
 /// A round thing by its outline: `radius(t)` at height z = t * height, in the directions x and y.
 /// `folds` m deep, `count` of them around.
 struct Round {

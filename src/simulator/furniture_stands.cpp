@@ -18,10 +18,6 @@ Vector3f brightColor(Dice& dice) {
   return Vector3f::Constant(0.5F * c.mean()) + 0.5F * c;
 }
 
-float random(Dice& dice, double low, double high) {
-  return static_cast<float>(dice.between(low, high));
-}
-
 }  // namespace
 
 void addShelf(const Part& p) {

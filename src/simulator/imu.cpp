@@ -15,7 +15,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // Uses of the seed.
-enum Purpose : std::uint32_t { kGyro = 1, kAccel, kGyroWalk, kAccelWalk, kShock, kBias };
+enum ImuPurpose : std::uint32_t { kGyro = 1, kAccel, kGyroWalk, kAccelWalk, kShock, kBias };
 
 Vector3d gaussian3(std::uint32_t seed, std::uint32_t index) {
   return {gaussian(hash(seed, index, 0U)), gaussian(hash(seed, index, 1U)),
@@ -52,7 +52,7 @@ class Flaws {
 
   void spoil(ImuSample& sample, std::uint32_t index) {
     const double root_hz = std::sqrt(c_.rate_hz);
-    const auto luck = [&](Purpose what) { return gaussian3(hash(seed_, what), index); };
+    const auto luck = [&](ImuPurpose what) { return gaussian3(hash(seed_, what), index); };
     const double hard_m_s2 = sample.force_m_s2.norm() - c_.shock_from_g * kGravity_m_s2;
     const Vector3d ringing = c_.shock * std::max(0.0, hard_m_s2) * luck(kShock);
     sample.rate_rad_s += rate_bias_ + c_.gyro_noise_rad_s_rthz * root_hz * luck(kGyro);

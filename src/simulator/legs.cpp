@@ -14,7 +14,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // Uses of the seed.
-enum Purpose : std::uint32_t { kScale = 1, kTurn, kDrift, kHeading, kSlip, kSlipTurn, kFall };
+enum LegPurpose : std::uint32_t { kScale = 1, kTurn, kDrift, kHeading, kSlip, kSlipTurn, kFall };
 
 constexpr double kSlip_s = 0.25;
 constexpr double kStepping_m_s = 0.05;  // slower is balance

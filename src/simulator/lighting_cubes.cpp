@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kSpacing_m = 0.7F;
+constexpr float kCubes_m = 0.7F;
 constexpr int kCubeRays = 256;
 
 /// The i-th of kCubeRays directions, evenly over the sphere (Fibonacci lattice).
@@ -29,9 +29,9 @@ void Lighting::fillCubes() {
   Eigen::AlignedBox3f box;
   for (const auto& room : world_.rooms) box.extend(room.cast<float>());
   if (box.isEmpty()) return;
-  cubes_from_ = box.min() + Vector3f::Constant(0.25F * kSpacing_m);
+  cubes_from_ = box.min() + Vector3f::Constant(0.25F * kCubes_m);
   for (int i = 0; i < 3; ++i) {
-    cubes_[i] = std::max(1, static_cast<int>(box.sizes()[i] / kSpacing_m));
+    cubes_[i] = std::max(1, static_cast<int>(box.sizes()[i] / kCubes_m));
   }
   cube_.assign(static_cast<std::size_t>(cubes_.prod()), AmbientCube{});
   parallelFor(cube_.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -39,7 +39,7 @@ void Lighting::fillCubes() {
       const int index = static_cast<int>(k);
       const Eigen::Vector3i cell(index % cubes_.x(), index / cubes_.x() % cubes_.y(),
                                  index / (cubes_.x() * cubes_.y()));
-      const Vector3f p = cubes_from_ + kSpacing_m * cell.cast<float>();
+      const Vector3f p = cubes_from_ + kCubes_m * cell.cast<float>();
       std::array<Vector3f, 6> sum;
       std::array<float, 6> weight{};
       sum.fill(Vector3f::Zero());
@@ -68,7 +68,7 @@ AmbientCube Lighting::cubeAt(const Vector3f& position) const {
   AmbientCube result;
   result.fill(Vector3f::Zero());
   if (cube_.empty()) return result;
-  const Vector3f g = (position - cubes_from_) / kSpacing_m;
+  const Vector3f g = (position - cubes_from_) / kCubes_m;
   Eigen::Vector3i low;
   Vector3f t;
   for (int i = 0; i < 3; ++i) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::size_t kPacket = 16;
-constexpr int kShadowRays = 4;
+constexpr int kRaysOfPeople = 4;
 constexpr float kShadowReach_m = 1.6F;
 constexpr float kCells_m = 0.3F;      // over which the light of a vertex fades away
 constexpr float kFaint = 0.025F;      // light of a lamp that is not worth its rays
@@ -133,12 +133,12 @@ std::array<float, 16> Lighting::shadowed(const PosedMovers& movers, const std::u
     sight.from[i] = mesh.positions[v] + 4e-3F * mesh.normals[v];
   }
   if (std::find(sight.asked.begin(), sight.asked.end(), true) == sight.asked.end()) return taken;
-  for (std::uint32_t ray = 0; ray < kShadowRays; ++ray) {
+  for (std::uint32_t ray = 0; ray < kRaysOfPeople; ++ray) {
     for (std::size_t i = 0; i < count; ++i) {
       sight.to[i] = lampPoint(area, ray, hash(vertices[i], 6U));
     }
     const auto blocked = movers.block(sight, 0.01F);
-    for (std::size_t i = 0; i < count; ++i) taken[i] += blocked[i] ? 1.0F / kShadowRays : 0.0F;
+    for (std::size_t i = 0; i < count; ++i) taken[i] += blocked[i] ? 1.0F / kRaysOfPeople : 0.0F;
   }
   return taken;
 }

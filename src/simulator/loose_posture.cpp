@@ -12,10 +12,6 @@ using Eigen::AngleAxisf;
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-float random(Dice& dice, double low, double high) {
-  return static_cast<float>(dice.between(low, high));
-}
-
 Bone next(Bone bone, int n) { return static_cast<Bone>(static_cast<int>(bone) + n); }
 
 /// Turns bones about the joint at which the first of them begins.

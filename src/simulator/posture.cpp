@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simulator/actor.hpp"
+#include "simulator/easing.hpp"
 #include "simulator/random.hpp"
 
 namespace pf::simulator {
@@ -15,7 +16,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-float smooth(double t) { return static_cast<float>(t * t * (3.0 - 2.0 * t)); }
+float smoothFloat(double t) { return static_cast<float>(smooth(t)); }
 
 Matrix3f about(float angle, const Vector3f& axis) {
   return AngleAxisf(angle, axis).toRotationMatrix();
@@ -85,7 +86,7 @@ class Poser {
 void Poser::poseTrunk() {
   const float s = rig_.scale();
   const double time = state_.time_s;
-  const float sit = smooth(state_.sit), crouch = smooth(state_.crouch);
+  const float sit = smoothFloat(state_.sit), crouch = smoothFloat(state_.crouch);
   yaw_ = about(static_cast<float>(state_.yaw), Vector3f::UnitZ());
   Vector3f hips(static_cast<float>(state_.at.x()), static_cast<float>(state_.at.y()),
                 static_cast<float>(state_.pelvis_m));
@@ -97,8 +98,8 @@ void Poser::poseTrunk() {
       yaw_ * Vector3f(0.008F * drift(seed_ + 1U, time, 3.0), 0.014F * drift(seed_, time, 4.0), 0);
   const float rising = 4.0F * sit * (1.0F - sit);
   const float lean = 0.04F * static_cast<float>(state_.speed_m_s) + 0.65F * rising - 0.10F * sit +
-                     0.55F * crouch + 0.45F * crouch * smooth(state_.grasp) +
-                     0.16F * smooth(state_.reach) - 0.05F * smooth(state_.carry) +
+                     0.55F * crouch + 0.45F * crouch * smoothFloat(state_.grasp) +
+                     0.16F * smoothFloat(state_.reach) - 0.05F * smoothFloat(state_.carry) +
                      0.03F * drift(seed_ + 2U, time, 5.0);
   const float stride = forwardOf(0) - forwardOf(1);
   const float twist = -0.16F * std::clamp(stride, -0.8F, 0.8F) * (1.0F - sit);
@@ -111,7 +112,7 @@ void Poser::poseTrunk() {
   const Matrix3f chest = yaw_ * about(twist + 0.05F * drift(seed_ + 4U, time, 4.0), z) *
                          about(lean, y) * about(sway, x);
   place(Bone::chest, chest, attached(Bone::spine, Bone::chest));
-  const float talk = smooth(state_.talk);
+  const float talk = smoothFloat(state_.talk);
   const float look = 0.30F * drift(seed_ + 5U, time, 2.6) + 0.15F * talk * drift(seed_, time, 0.8);
   const float nod =
       0.10F * drift(seed_ + 6U, time, 2.0) + 0.06F * talk * drift(seed_ + 7U, time, 0.5);
@@ -168,7 +169,7 @@ Vector3f Poser::wantedHand(float side, const Vector3f& shoulder) const {
   const float s = rig_.scale();
   Vector3f hand = swungHand(side, shoulder);
   const auto blend = [&](const Vector3f& to, double amount) {
-    hand += smooth(amount) * (to - hand);
+    hand += smoothFloat(amount) * (to - hand);
   };
   const auto thigh = side > 0 ? Bone::left_thigh : Bone::right_thigh;
   const Vector3f lap = posture_[index(thigh)] *

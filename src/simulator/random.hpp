@@ -52,6 +52,10 @@ class Dice {
   std::uint32_t counter_ = 0;
 };
 
+inline float random(Dice& dice, double low, double high) {
+  return static_cast<float>(dice.between(low, high));
+}
+
 /// Smooth noise in [-1, 1] on the integer lattice, period `period` cells in each axis (0: none).
 float latticeNoise(float x, float y, std::uint32_t seed, int period = 0);
 float latticeNoise(const Eigen::Vector3f& p, std::uint32_t seed);

@@ -104,7 +104,7 @@ const std::map<std::string, Style>& styles() {
 }
 
 /// A wall with its low end, both in the world.
-struct Wall {
+struct WallPlace {
   const char* name;
   Vector2d low, along;
   double length_m, yaw_rad;  ///< facing into the room
@@ -113,7 +113,7 @@ struct Wall {
   Vector2d inwards() const { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
 };
 
-std::array<Wall, 4> wallsOf(const RoomSpec& room) {
+std::array<WallPlace, 4> wallPlacesOf(const RoomSpec& room) {
   const Vector2d low = room.origin_m, size = room.size_m.head<2>();
   const Vector2d x = Vector2d::UnitX(), y = Vector2d::UnitY();
   return {{{"south", low, x, size.x(), M_PI_2, 0.05},
@@ -122,13 +122,13 @@ std::array<Wall, 4> wallsOf(const RoomSpec& room) {
            {"east", low + size.x() * x, y, size.y(), M_PI, kCorner_m}}};
 }
 
-class Furnisher {
+class RoomFurnisher {
  public:
-  explicit Furnisher(const RoomSpec& room)
+  explicit RoomFurnisher(const RoomSpec& room)
       : room_(room), style_(styles().at(room.furniture.style)), dice_(room.furniture.seed) {}
 
   std::vector<ObjectSpec> furnish() {
-    for (const Wall& wall : wallsOf(room_)) fillWall(wall);
+    for (const WallPlace& wall : wallPlacesOf(room_)) fillWall(wall);
     fillMiddle();
     return std::move(things_);
   }
@@ -150,7 +150,7 @@ class Furnisher {
 
   /// Where the wall is free again after the doorway that cuts into `from`..`to`; `from` where none
   /// does.
-  double afterDoorway(const Wall& wall, double from, double to) const {
+  double afterDoorway(const WallPlace& wall, double from, double to) const {
     for (const Doorway& doorway : room_.doorways) {
       const double half = 0.5 * doorway.width_m + kDoorwayMargin_m;
       const bool cuts = from < doorway.at_m + half && to > doorway.at_m - half;
@@ -159,7 +159,7 @@ class Furnisher {
     return from;
   }
 
-  void fillWall(const Wall& wall) {
+  void fillWall(const WallPlace& wall) {
     double from = wall.corner_m + dice_.between(0.0, 0.4);
     for (;;) {
       Thing thing = anyOf(dice_.chance(0.8) ? style_.walls : style_.pictures);
@@ -176,7 +176,7 @@ class Furnisher {
     }
   }
 
-  void place(const Wall& wall, const Thing& thing, double at_m) {
+  void place(const WallPlace& wall, const Thing& thing, double at_m) {
     const Vector2d foot = wall.low + at_m * wall.along;
     const bool stands = thing.place != Place::high;
     const double off = thing.place == Place::before ? 0.5 * thing.size_m.x() + 0.02 : 0.0;
@@ -224,7 +224,7 @@ std::vector<std::string> furnitureStyles() {
 
 std::vector<ObjectSpec> furnish(const RoomSpec& room) {
   if (room.furniture.style.empty()) return {};
-  return Furnisher(room).furnish();
+  return RoomFurnisher(room).furnish();
 }
 
 }  // namespace pf::simulator

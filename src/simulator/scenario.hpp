@@ -57,6 +57,11 @@ struct ScenarioChanges {
   std::optional<double> start_s;
 };
 
+/// How messages and keys name an entry of a list: "people[2]".
+inline std::string entryOf(const char* list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
 /// Names of the scenarios that come with the package.
 std::vector<std::string> scenarioNames();
 

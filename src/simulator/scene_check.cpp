@@ -16,10 +16,6 @@ using Eigen::Vector2d;
 constexpr double kStanding_m = 0.2;  // half the width of a body
 constexpr double kWall_m = 0.15;     // things may be let into a wall
 
-std::string entryOf(const char* list, std::size_t index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
-
 std::string textOf(const Vector2d& p) {
   char text[64];
   std::snprintf(text, sizeof text, " is (%.2f, %.2f), ", p.x(), p.y());

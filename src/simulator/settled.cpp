@@ -41,10 +41,6 @@ class Stray {
   Dice dice_;
 };
 
-std::string entryOf(const char* list, std::size_t index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
-
 void settlePerson(PersonSpec& person, const std::string& key, Stray stray) {
   if (person.stray_m <= 0.0) return;
   person.start_m = stray(person.start_m, key + ".start_m");

@@ -11,7 +11,7 @@
 namespace pf::simulator {
 namespace {
 
-constexpr int kSide = 512;
+constexpr int kSheet = 512;
 
 cv::Scalar someColor(Dice& dice, double darkest = 30, double brightest = 235) {
   // Printed things are rarely pure colours: half way to their own grey.
@@ -22,12 +22,12 @@ cv::Scalar someColor(Dice& dice, double darkest = 30, double brightest = 235) {
           grey + part * (pure[2] - grey)};
 }
 
-cv::Mat sheet(const cv::Scalar& color) { return cv::Mat(kSide, kSide, CV_8UC3, color); }
+cv::Mat sheet(const cv::Scalar& color) { return cv::Mat(kSheet, kSheet, CV_8UC3, color); }
 
 void addGrain(cv::Mat& picture, std::uint32_t seed, double height) {
-  for (int i = 0; i < kSide * kSide; ++i) {
+  for (int i = 0; i < kSheet * kSheet; ++i) {
     const float noise = gaussian(hash(seed, static_cast<std::uint32_t>(i)));
-    auto& p = picture.at<cv::Vec3b>(i / kSide, i % kSide);
+    auto& p = picture.at<cv::Vec3b>(i / kSheet, i % kSheet);
     for (int c = 0; c < 3; ++c) p[c] = cv::saturate_cast<std::uint8_t>(p[c] + height * noise);
   }
 }
@@ -75,8 +75,8 @@ void paintScenery(cv::Mat& picture, const cv::Rect& box, Dice& dice) {
 
 cv::Mat poster(Dice& dice) {
   cv::Mat picture = sheet(someColor(dice, 190, 250));
-  cv::rectangle(picture, {0, 0, kSide, 80}, someColor(dice, 20, 160), -1);
-  writeText(picture, {24, 90, kSide - 48, 60}, 44, dice);
+  cv::rectangle(picture, {0, 0, kSheet, 80}, someColor(dice, 20, 160), -1);
+  writeText(picture, {24, 90, kSheet - 48, 60}, 44, dice);
   paintScenery(picture, {24, 160, 220, 150}, dice);
   paintScenery(picture, {268, 330, 220, 150}, dice);
   writeText(picture, {268, 160, 220, 160}, 16, dice);
@@ -86,19 +86,19 @@ cv::Mat poster(Dice& dice) {
 
 cv::Mat photo(Dice& dice) {
   cv::Mat picture = sheet({30, 26, 22});
-  paintScenery(picture, {22, 22, kSide - 44, kSide - 44}, dice);
+  paintScenery(picture, {22, 22, kSheet - 44, kSheet - 44}, dice);
   return picture;
 }
 
 cv::Mat books(Dice& dice) {
   cv::Mat picture = sheet({20, 18, 16});
-  for (int x = 2; x < kSide;) {
+  for (int x = 2; x < kSheet;) {
     const int width = 14 + dice.below(36), top = dice.below(150);
     const cv::Scalar color = someColor(dice, 20, 220);
-    cv::rectangle(picture, {x, top, width, kSide - top}, color, -1);
-    cv::rectangle(picture, {x, top, 3, kSide - top}, color * 0.6, -1);
+    cv::rectangle(picture, {x, top, width, kSheet - top}, color, -1);
+    cv::rectangle(picture, {x, top, 3, kSheet - top}, color * 0.6, -1);
     for (int band = 0; band < 3; ++band) {
-      const int y = top + 20 + dice.below(kSide - top - 40);
+      const int y = top + 20 + dice.below(kSheet - top - 40);
       cv::rectangle(picture, {x + 4, y, std::max(2, width - 8), 4 + dice.below(40)},
                     someColor(dice, 60, 250), -1);
     }
@@ -109,7 +109,7 @@ cv::Mat books(Dice& dice) {
 
 cv::Mat screen(Dice& dice) {
   cv::Mat picture = sheet({24, 30, 44});
-  paintScenery(picture, {0, 0, kSide, kSide}, dice);
+  paintScenery(picture, {0, 0, kSheet, kSheet}, dice);
   for (int i = 0; i < 3; ++i) {
     const cv::Rect box(20 + dice.below(200), 20 + dice.below(200), 240, 220);
     cv::rectangle(picture, box, {236, 238, 240}, -1);
@@ -132,7 +132,7 @@ cv::Mat keys(Dice&) {
 
 cv::Mat carton(Dice& dice) {
   cv::Mat picture = sheet({176, 138, 96});
-  cv::rectangle(picture, {0, 236, kSide, 40}, {198, 176, 132}, -1);
+  cv::rectangle(picture, {0, 236, kSheet, 40}, {198, 176, 132}, -1);
   cv::rectangle(picture, {300, 320, 150, 110}, {236, 234, 226}, -1);
   writeText(picture, {308, 324, 134, 100}, 18, dice);
   writeText(picture, {30, 60, 260, 90}, 60, dice);
@@ -156,20 +156,20 @@ cv::Mat whiteboard(Dice& dice) {
 
 cv::Mat view(Dice& dice) {
   cv::Mat picture = sheet({232, 240, 250});
-  for (int x = 0; x < kSide;) {
+  for (int x = 0; x < kSheet;) {
     const int width = 50 + dice.below(90), top = 220 + dice.below(150);
     const cv::Scalar wall = someColor(dice, 150, 215);
-    cv::rectangle(picture, {x, top, width, kSide - top}, wall, -1);
-    for (int y = top + 14; y < kSide; y += 30) {
+    cv::rectangle(picture, {x, top, width, kSheet - top}, wall, -1);
+    for (int y = top + 14; y < kSheet; y += 30) {
       for (int c = x + 8; c < x + width - 12; c += 22) {
         cv::rectangle(picture, {c, y, 11, 15}, wall * 0.55, -1);
       }
     }
     x += width;
   }
-  cv::line(picture, {kSide / 2, 0}, {kSide / 2, kSide}, {222, 222, 218}, 16);
-  cv::line(picture, {0, kSide / 3}, {kSide, kSide / 3}, {222, 222, 218}, 12);
-  cv::rectangle(picture, {0, 0, kSide, kSide}, {222, 222, 218}, 26);
+  cv::line(picture, {kSheet / 2, 0}, {kSheet / 2, kSheet}, {222, 222, 218}, 16);
+  cv::line(picture, {0, kSheet / 3}, {kSheet, kSheet / 3}, {222, 222, 218}, 12);
+  cv::rectangle(picture, {0, 0, kSheet, kSheet}, {222, 222, 218}, 26);
   return picture;
 }
 
@@ -179,7 +179,7 @@ cv::Mat door(Dice& dice) {
   cv::Mat picture = sheet(base);
   cv::rectangle(picture, {70, 40, 372, 190}, base * 0.86, 5);
   cv::rectangle(picture, {70, 270, 372, 200}, base * 0.86, 5);
-  cv::rectangle(picture, {0, 0, kSide, kSide}, base * 0.7, 14);
+  cv::rectangle(picture, {0, 0, kSheet, kSheet}, base * 0.7, 14);
   addGrain(picture, dice.next(), 4.0);
   return picture;
 }
@@ -187,7 +187,7 @@ cv::Mat door(Dice& dice) {
 cv::Mat panel(Dice& dice) {
   cv::Mat picture = sheet({222, 222, 220});
   for (int i = 0; i <= 3; ++i) {
-    cv::line(picture, {0, i * 170}, {kSide, i * 170}, {120, 120, 122}, 5);
+    cv::line(picture, {0, i * 170}, {kSheet, i * 170}, {120, 120, 122}, 5);
     if (i < 3) cv::rectangle(picture, {220, i * 170 + 30, 72, 12}, {90, 90, 92}, -1);
   }
   addGrain(picture, dice.next(), 3.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/thing_stage.hpp"
+#include "simulator/easing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@ using Eigen::Vector3d;
 
 constexpr double kOnFloor_m = 0.4;  // things that stand lower are in the way of people
 constexpr int kGlances = 4;         // at which it must be out of view while it moves unseen
-
-double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
 
 /// The place after the part `t` of a way's length.
 Vector3d along(const std::vector<Vector3d>& way, double t) {

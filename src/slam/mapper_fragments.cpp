@@ -15,7 +15,7 @@ constexpr double kMostElapsed_s = 0.5;
 constexpr double kOpenView = 0.25;
 constexpr double kToPlace_s = 0.5;  // between two questions where the fragment lies
 // Two answers in a row that place the fragment alike are believed.
-constexpr double kAlike_m = 0.05, kAlike_rad = 0.03;
+constexpr double kSamePlace_m = 0.05, kSamePlace_rad = 0.03;
 
 }  // namespace
 
@@ -120,7 +120,7 @@ void Mapper::State::placeFragment(const PlaceVerdict& seen) {
   const bool again =
       seen_at && seen_at->other == place.other &&
       isWithin(T_other_keyframe.inverse() * seen_at->T_other_fragment * keyframe.T_map_camera,
-               kAlike_m, kAlike_rad);
+               kSamePlace_m, kSamePlace_rad);
   seen_at = place;
   frames_to_place = 0;  // the second answer soon
   if (again) wanted.loops.push_back(place.constraint.asPoseConstraint());

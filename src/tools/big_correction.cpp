@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/stamps.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/frame/flow.hpp"
@@ -27,7 +28,6 @@ constexpr int kRooms = 9;  // copies in a row
 constexpr double kBetweenRooms_m = 0.5;
 constexpr double kOff_m = 0.05;  // more than any loop is off: all loops are worth a correction
 constexpr double kFrame_s = 1.0 / 30;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 struct Options {
   std::string sequence;

@@ -15,7 +15,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr int kQueue = 100;
+constexpr int kStatusQueue = 100;
 // Pictures of frames of which nothing is heard any more are not kept.
 constexpr std::size_t kMostUnderWay = 100;
 
@@ -45,8 +45,8 @@ ReplayReport::ReplayReport(ros::NodeHandle& handle, const pf::Config& config, st
                            const pf::Trajectory& truth)
     : output_(std::move(output)), latest_before_(latest()), report_(config) {
   report_.setTruth(truth);
-  mask_ = handle.subscribe(topics::kMask, kQueue, &ReplayReport::onMask, this);
-  people_ = handle.subscribe(topics::kPeopleUsed, kQueue, &ReplayReport::onPeople, this);
+  mask_ = handle.subscribe(topics::kMask, kStatusQueue, &ReplayReport::onMask, this);
+  people_ = handle.subscribe(topics::kPeopleUsed, kStatusQueue, &ReplayReport::onPeople, this);
 }
 
 std::string ReplayReport::latest() const {

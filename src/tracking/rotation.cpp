@@ -9,11 +9,11 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxIterations = 12;
+constexpr int kMaxTurns = 12;
 constexpr double kMinOverlap = 0.3;  // part of the image that must be seen in both
 constexpr double kSmallStepRad = 1e-4;
 
-struct System {
+struct RotationSystem {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   double squared = 0, sum = 0, count = 0;
@@ -40,9 +40,9 @@ bool sample(const SmallImage& image, double u, double v, Eigen::Vector3d& value_
   return true;
 }
 
-System build(const SmallImage& previous, const SmallImage& current, const PinholeCamera& camera,
-             const Eigen::Matrix3d& R) {
-  System system;
+RotationSystem build(const SmallImage& previous, const SmallImage& current,
+                     const PinholeCamera& camera, const Eigen::Matrix3d& R) {
+  RotationSystem system;
   for (int v = 0; v < previous.intensity.rows; ++v) {
     for (int u = 0; u < previous.intensity.cols; ++u) {
       if (previous.still.at<unsigned char>(v, u) == 0) continue;
@@ -73,8 +73,8 @@ Eigen::Matrix3d alignRotation(const SmallImage& previous, const SmallImage& curr
   Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d R = best;
   double best_error = -1;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const System system = build(previous, current, camera, R);
+  for (int i = 0; i < kMaxTurns; ++i) {
+    const RotationSystem system = build(previous, current, camera, R);
     if (system.count < kMinOverlap * static_cast<double>(previous.intensity.total())) break;
     if (best_error >= 0 && system.error() >= best_error) break;
     best = R;

@@ -10,6 +10,9 @@
 
 namespace pf {
 
+/// Rows of an image or of a grid that a thread takes at a time.
+constexpr std::size_t kRowsAtOnce = 8;
+
 /// Calls body(begin, end) on pieces of [0, count) of about `grain` items, in parallel. The body
 /// must write only what its own items own, so that the number of threads cannot change the result.
 template <typename Body>

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <optional>
 
 namespace pf {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 /// Skew-symmetric matrix: hat(a) * b = a x b.
 Eigen::Matrix3d hat(const Eigen::Vector3d& omega);

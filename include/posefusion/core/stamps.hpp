@@ -9,6 +9,8 @@
 
 namespace pf {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
 /// Decimal seconds ("1341845820.819654") to nanoseconds, exactly. Throws InputError.
 std::int64_t parseStamp(const std::string& seconds);
 

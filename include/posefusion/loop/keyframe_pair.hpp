@@ -53,6 +53,10 @@ class PairAligner {
   PlaceVerdict align(const KeyframePicture& from, const KeyframePicture& to,
                      const Eigen::Isometry3d& T_from_to_guess);
 
+  /// Is the alignment the other way round accepted too, and does it agree with T_from_to?
+  bool confirms(const KeyframePicture& from, const KeyframePicture& to,
+                const Eigen::Isometry3d& T_from_to);
+
  private:
   TrackingConfig tracking_;
   ModelView seen_;

@@ -17,9 +17,11 @@ struct MapConfig {
 };
 
 inline void visitFields(MapConfig& c, FieldVisitor& v) {
-  v.integer("shrink", c.shrink, 1, 8,
-            "near surfaces are mapped in images shrunk by this factor, farther ones in images "
-            "halved until a pixel is as wide as half the standard deviation of its depth");
+  v.integer(
+      "shrink", c.shrink, 1, 8,
+      "near surfaces get a surfel for each pixel of images shrunk by this factor, farther ones "
+      "of images halved until a pixel is as wide as half the standard deviation of its depth, "
+      "but never coarser than those that tracking sees (frame.shrink)");
   v.number(
       "stable_probability", c.stable_probability, 0.0, 0.96,
       "a surfel that stands still with this probability is stable (0.27 s of views that agree "

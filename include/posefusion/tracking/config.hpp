@@ -20,7 +20,8 @@ struct TrackingConfig {
 };
 
 inline void visitFields(TrackingConfig& c, FieldVisitor& v) {
-  v.number("max_distance_m", c.max_distance_m, 1e-3, 10.0, "largest distance of a matched pair");
+  v.number("max_distance_m", c.max_distance_m, 1e-3, 10.0,
+           "largest distance of a matched pair, or three sigmas of its depth where that is more");
   v.number("max_normal_angle_rad", c.max_normal_angle_rad, 0.01, 3.14,
            "largest angle between the normals of a matched pair");
   v.number("photometric_sigma", c.photometric_sigma, 0.0, 1000.0,
