@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kViews = 4, kStep = 5;
 
-const SimulatedSequence& room() {
+const SimulatedSequence& closerRoom() {
   static const SimulatedSequence sequence("empty_box", kViews * kStep);
   return sequence;
 }
@@ -26,11 +26,11 @@ WorkingFrame frameOf(int view) {
   WorkingFrame frame;
   FrameConfig config;
   config.shrink = 2;  // steps are a large part of the view: coarse on purpose
-  frame.assign(room().frame(view * kStep).frame, cv::Mat(), config);
+  frame.assign(closerRoom().frame(view * kStep).frame, cv::Mat(), config);
   return frame;
 }
 
-Eigen::Isometry3d poseOf(int view) { return room().pose(view * kStep); }
+Eigen::Isometry3d poseOf(int view) { return closerRoom().pose(view * kStep); }
 
 KeyframePicture pictureOf(int view) {
   KeyframePicture picture;

@@ -4,12 +4,12 @@
 #include <random>
 
 #include "posefusion/evaluation/covariance_check.hpp"
+#include "random_pose.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr int kLength = 4000;
+constexpr int kPoses = 4000;
 
 /// Standard deviations of the six axes of one step, all different.
 Vector6d sigmas() {
@@ -31,7 +31,7 @@ Walk walk(double noise, std::int64_t step_ms = 33) {
   Vector6d step;
   step << 0.01, 0.002, 0.02, 0.001, 0.02, 0.003;
   Eigen::Isometry3d Q = Eigen::Isometry3d::Identity(), P = expSe3(10 * step);
-  for (int i = 0; i < kLength; ++i) {
+  for (int i = 0; i < kPoses; ++i) {
     const std::int64_t stamp_ns = i * step_ms * kMs;
     walk.truth.push_back({stamp_ns, Q});
     walk.poses.push_back({stamp_ns, P, sigmas().cwiseAbs2().asDiagonal()});
@@ -46,7 +46,7 @@ Walk walk(double noise, std::int64_t step_ms = 33) {
 TEST(CovarianceCheck, ACorrectCovarianceHoldsTheShareOfANormalError) {
   const Walk w = walk(1.0);
   const CovarianceShare share = checkCovariances(w.truth, w.poses);
-  EXPECT_EQ(share.motions, static_cast<std::size_t>(kLength - 1));
+  EXPECT_EQ(share.motions, static_cast<std::size_t>(kPoses - 1));
   for (const double axis : share.axes) EXPECT_NEAR(axis, 0.9973, 0.004);
   EXPECT_NEAR(share.within, std::pow(0.9973, 6), 0.006);
   EXPECT_NEAR(share.within_ellipsoid, 0.9973, 0.004);
@@ -92,7 +92,7 @@ TEST(CovarianceCheck, LongGapsAndMissingTruthAreLeftOut) {
   EXPECT_EQ(checkCovariances({}, slow.poses).motions, 0U);
   Walk w = walk(1.0);
   w.truth.erase(w.truth.begin() + 100, w.truth.begin() + 200);
-  EXPECT_EQ(checkCovariances(w.truth, w.poses).motions, static_cast<std::size_t>(kLength - 102));
+  EXPECT_EQ(checkCovariances(w.truth, w.poses).motions, static_cast<std::size_t>(kPoses - 102));
 }
 
 /// Provisional poses that are off by 0.1 m, in a map that lies anywhere in the truth.

@@ -44,7 +44,7 @@ SurfelArrays wall() {
   return s;
 }
 
-SurfelMap mapOf(const SurfelArrays& surfels, double memory_limit_mb = 100) {
+SurfelMap deformable(const SurfelArrays& surfels, double memory_limit_mb = 100) {
   MapConfig config;
   config.memory_limit_mb = memory_limit_mb;
   SurfelMap map(config);
@@ -85,7 +85,7 @@ void expectSound(const SurfelMap& map) {
 }
 
 TEST(Deform, TheIdentityLeavesAllBits) {
-  const SurfelMap before = mapOf(wall());
+  const SurfelMap before = deformable(wall());
   SurfelMap map = before;
   deform(map, Deformation());
   deform(map, everything(Eigen::Isometry3d::Identity()));
@@ -93,7 +93,7 @@ TEST(Deform, TheIdentityLeavesAllBits) {
 }
 
 TEST(Deform, WhatWasMadeWhereNothingMovesKeepsItsBitsAndItsBlock) {
-  const SurfelMap before = mapOf(wall());
+  const SurfelMap before = deformable(wall());
   SurfelMap map = before;
   deform(map, bend());
   for (std::size_t k = 0; k < before.blocks().size(); ++k) {
@@ -111,7 +111,7 @@ TEST(Deform, WhatWasMadeWhereNothingMovesKeepsItsBitsAndItsBlock) {
 TEST(Deform, BlocksOlderThanWhatMovesAreLeftAsIfTheyHadBeenLookedAt) {
   // Filled frame by frame, as a camera does it: what was seen first was changed last long ago.
   const SurfelArrays all = wall();
-  SurfelMap map = mapOf({});
+  SurfelMap map = deformable({});
   map.clear();
   for (int frame = 0; frame < kFrames; ++frame) {
     map.advance();
@@ -126,7 +126,7 @@ TEST(Deform, BlocksOlderThanWhatMovesAreLeftAsIfTheyHadBeenLookedAt) {
   const auto old = std::count_if(map.blocks().begin(), map.blocks().end(),
                                  [](const SurfelBlock& block) { return block.changed < 40; });
   ASSERT_GT(old, 0);
-  SurfelMap whole = mapOf(all);  // all its blocks are new
+  SurfelMap whole = deformable(all);  // all its blocks are new
   deform(map, bend());
   deform(whole, bend());
   expectEqual(map, whole);
@@ -135,7 +135,7 @@ TEST(Deform, BlocksOlderThanWhatMovesAreLeftAsIfTheyHadBeenLookedAt) {
 TEST(Deform, OneFragmentJoinsAnotherAndThatStays) {
   // The same surfels in fragments 0, 1 and 2; 2 becomes part of 1. Frames belong to all of them.
   for (const Eigen::Isometry3d& T : {Eigen::Isometry3d::Identity(), motion(0.9, -0.2, 0.1, 0.4)}) {
-    SurfelMap map = mapOf(wall());
+    SurfelMap map = deformable(wall());
     map.add(wall(), 1);
     map.add(wall(), 2);
     const SurfelMap before = map;
@@ -172,7 +172,7 @@ TEST(Deform, OneFragmentJoinsAnotherAndThatStays) {
 
 TEST(Deform, EachSurfelGoesWithTheFrameThatMadeIt) {
   const SurfelArrays before = wall();
-  SurfelMap map = mapOf(before);
+  SurfelMap map = deformable(before);
   deform(map, bend());
   EXPECT_EQ(map.size(), before.size());
   std::vector<std::vector<std::size_t>> made(kFrames);
@@ -195,7 +195,7 @@ TEST(Deform, EachSurfelGoesWithTheFrameThatMadeIt) {
 }
 
 TEST(Deform, ARigidOneShowsTheSameFromTheMovedCamera) {
-  const SurfelMap before = mapOf(wall());
+  const SurfelMap before = deformable(wall());
   SurfelMap map = before;
   const Eigen::Isometry3d T = motion(3.1, -0.7, 1.3, 0.8);
   deform(map, everything(T));
@@ -224,7 +224,7 @@ TEST(Deform, IsTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 4}) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                               static_cast<std::size_t>(threads));
-    maps.push_back(mapOf(wall()));
+    maps.push_back(deformable(wall()));
     deform(maps.back(), bend());
   }
   expectEqual(maps[0], maps[1]);
@@ -233,7 +233,7 @@ TEST(Deform, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Deform, KeepsTheLimitOfMemory) {
   SurfelArrays surfels = wall();
-  SurfelMap map = mapOf(surfels, 1.0);
+  SurfelMap map = deformable(surfels, 1.0);
   const std::size_t before = map.size() + map.refused();
   EXPECT_EQ(before, surfels.size());
   for (int i = 0; i < 3; ++i) {

@@ -10,7 +10,7 @@
 namespace pf {
 namespace {
 
-Eigen::Isometry3d motion(double x, double yaw) {
+Eigen::Isometry3d slide(double x, double yaw) {
   Vector6d twist;
   twist << x, 0.2 * x, 0, 0, yaw, 0.1 * yaw;
   return expSe3(twist);
@@ -25,9 +25,9 @@ Deformation example(const Eigen::Isometry3d& world = Eigen::Isometry3d::Identity
   const auto seen = [&](const Eigen::Isometry3d& T) { return world * T * world.inverse(); };
   return Deformation(3, {{0, Eigen::Isometry3d::Identity(), true},
                          {10, Eigen::Isometry3d::Identity(), true},
-                         {20, seen(motion(0.3, 0.1)), true},
-                         {30, seen(motion(0.5, -0.2)), false},
-                         {40, seen(motion(2.0, 1.0)), false}});
+                         {20, seen(slide(0.3, 0.1)), true},
+                         {30, seen(slide(0.5, -0.2)), false},
+                         {40, seen(slide(2.0, 1.0)), false}});
 }
 
 TEST(Deformation, OfNothingIsTheIdentity) {
@@ -55,17 +55,17 @@ TEST(Deformation, ReportsTheFirstFrameThatItMoves) {
   EXPECT_FALSE(same(example().at(11), Eigen::Isometry3d::Identity(), 0));
   EXPECT_EQ(example().firstMoved(1), Frames::max()) << "it has no node there";
   EXPECT_EQ(Deformation().firstMoved(0), Frames::max());
-  const Deformation all(1, {{5, motion(0.3, 0.1), true}});
+  const Deformation all(1, {{5, slide(0.3, 0.1), true}});
   EXPECT_EQ(all.firstMoved(0), Frames::min()) << "what is older goes with the first node";
   const Deformation apart(1,
-                          {{5, Eigen::Isometry3d::Identity(), false}, {9, motion(0.3, 0.1), true}});
+                          {{5, Eigen::Isometry3d::Identity(), false}, {9, slide(0.3, 0.1), true}});
   EXPECT_EQ(apart.firstMoved(0), 9) << "nothing is blended where nothing was tracked";
 }
 
 TEST(Deformation, IsTheCorrectionAtItsNodesAndGoesSteadilyBetween) {
   const Deformation d = example();
-  EXPECT_TRUE(same(d.at(20), motion(0.3, 0.1), 0));
-  EXPECT_TRUE(same(d.at(30), motion(0.5, -0.2), 0));
+  EXPECT_TRUE(same(d.at(20), slide(0.3, 0.1), 0));
+  EXPECT_TRUE(same(d.at(30), slide(0.5, -0.2), 0));
   const Eigen::Isometry3d step = d.at(20).inverse() * d.at(21);
   for (int frame = 20; frame < 30; ++frame) {
     EXPECT_TRUE(same(d.at(frame + 1), d.at(frame) * step, 1e-12)) << frame;
@@ -75,16 +75,16 @@ TEST(Deformation, IsTheCorrectionAtItsNodesAndGoesSteadilyBetween) {
 
 TEST(Deformation, DoesNotBlendAcrossWhatWasNotTracked) {
   const Deformation d = example();
-  EXPECT_TRUE(same(d.at(39), motion(0.5, -0.2), 0));
-  EXPECT_TRUE(same(d.at(40), motion(2.0, 1.0), 0));
+  EXPECT_TRUE(same(d.at(39), slide(0.5, -0.2), 0));
+  EXPECT_TRUE(same(d.at(40), slide(2.0, 1.0), 0));
 }
 
 TEST(Deformation, WhatIsMadeAfterTheLastNodeGoesWithIt) {
-  EXPECT_TRUE(same(example().at(1000), motion(2.0, 1.0), 0));
+  EXPECT_TRUE(same(example().at(1000), slide(2.0, 1.0), 0));
 }
 
 TEST(Deformation, MovesWithTheWorld) {
-  const Eigen::Isometry3d world = motion(5, 2);
+  const Eigen::Isometry3d world = slide(5, 2);
   for (const int frame : {5, 13, 20, 27, 35, 50}) {
     const Eigen::Isometry3d expected = world * example().at(frame) * world.inverse();
     EXPECT_TRUE(same(example(world).at(frame), expected, 1e-9)) << frame;
@@ -92,21 +92,20 @@ TEST(Deformation, MovesWithTheWorld) {
 }
 
 TEST(Deformation, SortsItsNodes) {
-  const Deformation d(1, {{30, motion(1, 0), false}, {10, motion(2, 0), false}});
-  EXPECT_TRUE(same(d.at(15), motion(2, 0), 0));
-  EXPECT_TRUE(same(d.at(35), motion(1, 0), 0));
+  const Deformation d(1, {{30, slide(1, 0), false}, {10, slide(2, 0), false}});
+  EXPECT_TRUE(same(d.at(15), slide(2, 0), 0));
+  EXPECT_TRUE(same(d.at(35), slide(1, 0), 0));
 }
 
 TEST(Deformation, OfOneFragmentLeavesTheOthers) {
   // Fragment 1 was mapped in between, and the camera came back to fragment 0.
   const Deformation d(
-      1,
-      {{0, motion(0.1, 0), true, 0}, {10, motion(5, 1), false, 1}, {20, motion(0.3, 0), false, 0}},
+      1, {{0, slide(0.1, 0), true, 0}, {10, slide(5, 1), false, 1}, {20, slide(0.3, 0), false, 0}},
       Deformation::Join{1, 0});
-  EXPECT_TRUE(same(d.at(5, 0), motion(0.15, 0), 1e-9));
-  EXPECT_TRUE(same(d.at(15, 0), motion(0.25, 0), 1e-9)) << "not by the other's keyframe";
-  EXPECT_TRUE(same(d.at(5, 1), motion(5, 1), 0));
-  EXPECT_TRUE(same(d.at(15, 1), motion(5, 1), 0));
+  EXPECT_TRUE(same(d.at(5, 0), slide(0.15, 0), 1e-9));
+  EXPECT_TRUE(same(d.at(15, 0), slide(0.25, 0), 1e-9)) << "not by the other's keyframe";
+  EXPECT_TRUE(same(d.at(5, 1), slide(5, 1), 0));
+  EXPECT_TRUE(same(d.at(15, 1), slide(5, 1), 0));
   EXPECT_TRUE(same(d.at(15, 2), Eigen::Isometry3d::Identity(), 0));
   EXPECT_EQ(d.fragmentAfter(0), 0);
   EXPECT_EQ(d.fragmentAfter(1), 0);

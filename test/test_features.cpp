@@ -17,13 +17,13 @@ namespace {
 constexpr int kLast = 15;
 const DepthSensor kKinect;
 
-const SimulatedSequence& room() {
+const SimulatedSequence& featureRoom() {
   static const SimulatedSequence sequence("empty_box", kLast + 1);
   return sequence;
 }
 
 Features featuresOf(int index) {
-  const TrueFrame truth = room().frame(index);
+  const TrueFrame truth = featureRoom().frame(index);
   FeatureImage image;
   cv::cvtColor(truth.frame.color, image.intensity, cv::COLOR_RGB2GRAY);
   depthInMetres(truth.frame, 0.3, 5.0, image.depth_m);
@@ -36,7 +36,7 @@ TEST(Features, FindTheMotionBetweenTwoViews) {
   ASSERT_TRUE(match.found);
   EXPECT_LE(match.inliers, match.matches);
   const Eigen::Isometry3d off =
-      match.T_first_second.inverse() * room().pose(0).inverse() * room().pose(kLast);
+      match.T_first_second.inverse() * featureRoom().pose(0).inverse() * featureRoom().pose(kLast);
   EXPECT_LT(off.translation().norm(), 0.05);
   EXPECT_LT(logSo3(off.linear()).norm(), 0.03);
 }
@@ -49,7 +49,7 @@ TEST(Features, TheWayBackIsTheInverse) {
 }
 
 TEST(Features, AreOnlyWhereThereIsDepth) {
-  const TrueFrame truth = room().frame(0);
+  const TrueFrame truth = featureRoom().frame(0);
   FeatureImage image;
   cv::cvtColor(truth.frame.color, image.intensity, cv::COLOR_RGB2GRAY);
   image.depth_m = cv::Mat::zeros(image.intensity.size(), CV_32FC1);

@@ -13,12 +13,12 @@
 namespace pf {
 namespace {
 
-constexpr int kViews = 60;
+constexpr int kViewsOfRoom = 60;
 
 std::vector<CalibrationView> distortedViews() {
   test::RoomView like;
   like.field = test::roomField();
-  return test::roomViews(kViews, like);
+  return test::roomViews(kViewsOfRoom, like);
 }
 
 const FieldEstimate& distortedEstimate() {
@@ -34,7 +34,7 @@ TEST(FieldEstimate, recoversTheFieldOfASyntheticCamera) {
   EXPECT_GE(like.correlation, 0.95);
   EXPECT_LT(like.rms_difference, 0.3 * like.rms_b);
   EXPECT_LT(estimate.kept_out.after_mm, estimate.kept_out.before_mm);
-  EXPECT_GE(estimate.views, static_cast<std::size_t>(kViews));
+  EXPECT_GE(estimate.views, static_cast<std::size_t>(kViewsOfRoom));
 }
 
 TEST(FieldEstimate, hasNoMean) { EXPECT_NEAR(distortedEstimate().field.mean(), 0, 1e-15); }
@@ -43,7 +43,7 @@ TEST(FieldEstimate, poseErrorsOfACentimetreDoNotRuinIt) {
   test::RoomView like;
   like.field = test::roomField();
   like.pose_error_m = 0.007;
-  const FieldEstimate estimate = estimateField(test::roomViews(kViews, like));
+  const FieldEstimate estimate = estimateField(test::roomViews(kViewsOfRoom, like));
   EXPECT_GE(compare(estimate.field, test::roomField()).correlation, 0.9);
   EXPECT_TRUE(estimate.worth_taking);
 }
@@ -52,7 +52,7 @@ TEST(FieldEstimate, aGoodCameraIsLeftAlone) {
   for (const double pose_error_m : {0.0, 0.005}) {
     test::RoomView like;
     like.pose_error_m = pose_error_m;
-    const FieldEstimate estimate = estimateField(test::roomViews(kViews, like));
+    const FieldEstimate estimate = estimateField(test::roomViews(kViewsOfRoom, like));
     EXPECT_LT(estimate.field.rms(), 0.0005) << pose_error_m;
     EXPECT_FALSE(estimate.worth_taking) << pose_error_m << ", " << estimate.kept_out.significance;
     EXPECT_NE(estimate.reason, "");

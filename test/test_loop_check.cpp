@@ -5,11 +5,10 @@
 
 #include "posefusion/core/se3.hpp"
 #include "posefusion/evaluation/loop_check.hpp"
+#include "random_pose.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 Vector6d twist(double x, double y, double z, double a, double b, double c) {
   Vector6d v;
@@ -18,11 +17,11 @@ Vector6d twist(double x, double y, double z, double a, double b, double c) {
 }
 
 /// A camera that walks and turns, a true pose each 10 ms, keyframes between them in time.
-struct Walk {
+struct LoopWalk {
   Trajectory truth;
   std::vector<Keyframe> keyframes;
 
-  Walk() {
+  LoopWalk() {
     const Vector6d speed = twist(0.002, 0.0005, 0.004, 0.001, 0.003, -0.001);
     for (int i = 0; i < 100; ++i) truth.push_back({i * 10 * kMs, expSe3(i * speed)});
     for (int i = 0; i < 5; ++i) {
@@ -48,7 +47,7 @@ struct Walk {
 };
 
 TEST(LoopCheck, MeasuresJustTheErrorOfALoop) {
-  const Walk walk;
+  const LoopWalk walk;
   const auto errors =
       checkLoops(walk.truth, walk.keyframes,
                  {walk.loop(0, 3, Vector6d::Zero()), walk.loop(4, 1, twist(0.03, 0, 0.04, 0, 0, 0)),
@@ -64,7 +63,7 @@ TEST(LoopCheck, MeasuresJustTheErrorOfALoop) {
 }
 
 TEST(LoopCheck, WrongIsEitherTooFarOrTurnedTooFar) {
-  const Walk walk;
+  const LoopWalk walk;
   const auto errors = checkLoops(
       walk.truth, walk.keyframes,
       {walk.loop(0, 3, twist(0.11, 0, 0, 0, 0, 0)), walk.loop(0, 3, twist(0, 0, 0, 0.06, 0, 0)),
@@ -76,7 +75,7 @@ TEST(LoopCheck, WrongIsEitherTooFarOrTurnedTooFar) {
 }
 
 TEST(LoopCheck, StepsAndKeyframesWithoutTruthAreLeftOut) {
-  Walk walk;
+  LoopWalk walk;
   PoseConstraint step = walk.loop(0, 1, twist(1, 0, 0, 0, 0, 0));
   step.kind = ConstraintKind::odometry;
   walk.keyframes[2].stamp_ns = 5000 * kMs;

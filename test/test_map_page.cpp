@@ -17,7 +17,7 @@ namespace pf {
 namespace {
 
 /// A level square of `side` x `side` surfels, 1 cm apart.
-SurfelArrays square(std::size_t side) {
+SurfelArrays squareOf(std::size_t side) {
   SurfelArrays s;
   s.resize(side * side);
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -93,7 +93,7 @@ void expectNothingFromOutside(const std::string& page) {
 }
 
 TEST(MapPage, AMeshCanBeReadFromThePageAsItWas) {
-  const PageGeometry geometry = pageMesh(square(100), {}, 10'000'000);
+  const PageGeometry geometry = pageMesh(squareOf(100), {}, 10'000'000);
   const std::string page = pageOf(geometry);
   expectNothingFromOutside(page);
   const auto facts = factsOf(page);
@@ -113,7 +113,7 @@ TEST(MapPage, AMeshCanBeReadFromThePageAsItWas) {
 }
 
 TEST(MapPage, SurfelsAreManyChunksInOnePage) {
-  const PageGeometry geometry = pageSurfels(square(300), 10'000'000);
+  const PageGeometry geometry = pageSurfels(squareOf(300), 10'000'000);
   ASSERT_GE(geometry.chunks.size(), 2U);
   const std::string page = pageOf(geometry);
   expectNothingFromOutside(page);
@@ -129,7 +129,7 @@ TEST(MapPage, SurfelsAreManyChunksInOnePage) {
 
 TEST(MapPage, ATitleIsTextWhateverItHolds) {
   const std::string page =
-      pageOf(pageSurfels(square(3), 10'000), "</title><script>alert(1)</script>\"{{chunks}}&");
+      pageOf(pageSurfels(squareOf(3), 10'000), "</title><script>alert(1)</script>\"{{chunks}}&");
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);
   EXPECT_NE(page.find("<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt;&quot;"),
             std::string::npos);
@@ -142,7 +142,7 @@ TEST(MapPage, AFileIsNoLargerThanItMayBe) {
   config.size_limit_mb = 0.3;
   for (const PageKind kind : {PageKind::mesh, PageKind::surfels}) {
     config.kind = kind;
-    saveMapPage(folder / "a.html", square(400), "room", config);
+    saveMapPage(folder / "a.html", squareOf(400), "room", config);
     const auto size = std::filesystem::file_size(folder / "a.html");
     EXPECT_LE(size, 300'000U);
     EXPECT_GT(size, 150'000U);
@@ -152,7 +152,7 @@ TEST(MapPage, AFileIsNoLargerThanItMayBe) {
 TEST(MapPage, WhatCannotBeIsRefusedAndNothingIsLeft) {
   const TemporaryFolder folder;
   const auto refusal = [&](const std::string& name, std::size_t side, const MapPageConfig& config) {
-    return errorOf([&] { saveMapPage(folder / name, square(side), "room", config); });
+    return errorOf([&] { saveMapPage(folder / name, squareOf(side), "room", config); });
   };
   EXPECT_NE(refusal("a.txt", 9, {}).find("a.txt: ends in '.txt', expected .html"),
             std::string::npos);

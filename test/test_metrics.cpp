@@ -9,19 +9,11 @@
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/trajectory_file.hpp"
+#include "random_pose.hpp"
 #include "test_data.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-Eigen::Isometry3d randomPose(std::mt19937& random, double size = 1.0) {
-  std::uniform_real_distribution<double> unit(-size, size);
-  Vector6d twist;
-  for (int i = 0; i < 6; ++i) twist[i] = unit(random);
-  return expSe3(twist);
-}
 
 /// A random walk at 10 Hz.
 Trajectory randomWalk(unsigned seed, int length) {

@@ -12,14 +12,14 @@
 namespace pf {
 namespace {
 
-constexpr float kWall_m = 3.0F, kBox_m = 2.0F;
+constexpr float kBackWall_m = 3.0F, kBoxFront_m = 2.0F;
 constexpr double kSide_m = 0.5;
 constexpr double kNever = 1e9;
-constexpr std::int64_t kFrame_ns = 33'333'333;
+constexpr std::int64_t kStep_ns = 33'333'333;
 
 const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
 
-/// The left side (m, map frame) of a box at kBox_m, 0.5 m wide and high, at a time (s).
+/// The left side (m, map frame) of a box at kBoxFront_m, 0.5 m wide and high, at a time (s).
 using Way = std::function<double(double)>;
 
 /// Before a mapped wall stands a box. The camera looks straight at the wall.
@@ -27,13 +27,13 @@ class Room {
  public:
   explicit Room(Way box) : box_(std::move(box)), objects_(DepthSensor()) {
     view_.camera = kCamera;
-    view_.depth_m = cv::Mat(480, 640, CV_32FC1, cv::Scalar(kWall_m));
+    view_.depth_m = cv::Mat(480, 640, CV_32FC1, cv::Scalar(kBackWall_m));
   }
 
   /// Frames until `end_s`; the camera is at (x, 0, 0) with x = camera(time).
   void runUntil(
       double end_s, const Way& camera = [](double) { return 0.0; }) {
-    for (; 1e-9 * static_cast<double>(stamp_ns_) < end_s; stamp_ns_ += kFrame_ns) {
+    for (; 1e-9 * static_cast<double>(stamp_ns_) < end_s; stamp_ns_ += kStep_ns) {
       const double now_s = 1e-9 * static_cast<double>(stamp_ns_);
       see(box_(now_s), camera(now_s));
     }
@@ -57,14 +57,14 @@ class Room {
     RgbdFrame frame;
     frame.camera = kCamera;
     frame.color = cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(100));
-    cv::Mat depth_m(480, 640, CV_32FC1, cv::Scalar(kWall_m));
+    cv::Mat depth_m(480, 640, CV_32FC1, cv::Scalar(kBackWall_m));
     const auto pixelOf = [&](double x_m) {
-      return cvRound(kCamera.cx + kCamera.fx * (x_m - camera_m) / kBox_m);
+      return cvRound(kCamera.cx + kCamera.fx * (x_m - camera_m) / kBoxFront_m);
     };
-    const int high = cvRound(kCamera.fy * kSide_m / kBox_m);
+    const int high = cvRound(kCamera.fy * kSide_m / kBoxFront_m);
     const cv::Rect box(pixelOf(left_m), 240, pixelOf(left_m + kSide_m) - pixelOf(left_m), high);
     const cv::Rect seen = box & cv::Rect(0, 0, 640, 480);
-    depth_m(seen).setTo(kBox_m);
+    depth_m(seen).setTo(kBoxFront_m);
     boxPart_ = static_cast<double>(seen.area()) / (640.0 * 480.0);
     addNoise(depth_m);
     sampleGrid(frame, depth_m, 160, grid_);
@@ -92,7 +92,7 @@ class Room {
   ModelView view_;
   SceneGrid grid_;
   std::vector<MovingObject> found_;
-  std::int64_t stamp_ns_ = kFrame_ns;
+  std::int64_t stamp_ns_ = kStep_ns;
   std::mt19937 random_{7};
   double boxPart_ = 0, worst_ = 0;
 };
@@ -115,7 +115,7 @@ TEST(MovingObjects, WhatMovesIsFoundWithItsVelocityUnderOneNumber) {
     EXPECT_NEAR(object.velocity_m_s.x(), speed_m_s, 0.1 + 0.15 * speed_m_s);
     EXPECT_NEAR(object.velocity_m_s.tail<2>().norm(), 0.0, 0.1);
     EXPECT_NEAR(object.box_m().sizes().x(), kSide_m, 0.08);
-    EXPECT_NEAR(object.centre_m.z(), kBox_m, 0.03);
+    EXPECT_NEAR(object.centre_m.z(), kBoxFront_m, 0.03);
   }
 }
 

@@ -5,26 +5,27 @@
 #include <random>
 
 #include "posefusion/evaluation/nees.hpp"
+#include "random_pose.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr int kLength = 12'000;  // 400 s
+constexpr int kSteps = 12'000;  // 400 s
 
-Vector6d sigmas() {
+Vector6d trueSigmas() {
   Vector6d s;
   s << 0.001, 0.002, 0.004, 0.001, 0.0005, 0.002;
   return s;
 }
 
-struct Walk {
+struct NoisyWalk {
   Trajectory truth;
   std::vector<UncertainPose> poses;
 };
 
-/// A walk whose poses are each off by normal noise of sigmas(); reported are `said` * sigmas().
-Walk walk(double said) {
+/// A walk whose poses are each off by normal noise of trueSigmas(); reported are `said` *
+/// trueSigmas().
+NoisyWalk noisyWalk(double said) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   Vector6d step;
@@ -32,15 +33,15 @@ Walk walk(double said) {
   Vector6d far;
   far << 3, -5, 1, 0.3, 2, -0.4;
   const Eigen::Isometry3d T_map_world = expSe3(far);
-  Walk walk;
+  NoisyWalk walk;
   Eigen::Isometry3d Q = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < kLength; ++i) {
+  for (int i = 0; i < kSteps; ++i) {
     Vector6d error;
-    for (int axis = 0; axis < 6; ++axis) error[axis] = sigmas()[axis] * normal(random);
+    for (int axis = 0; axis < 6; ++axis) error[axis] = trueSigmas()[axis] * normal(random);
     const std::int64_t stamp_ns = i * 100 * kMs / 3;
     walk.truth.push_back({stamp_ns, Q});
-    walk.poses.push_back(
-        {stamp_ns, T_map_world * Q * expSe3(error), (said * sigmas()).cwiseAbs2().asDiagonal()});
+    walk.poses.push_back({stamp_ns, T_map_world * Q * expSe3(error),
+                          (said * trueSigmas()).cwiseAbs2().asDiagonal()});
     Q = Q * expSe3(step);
   }
   return walk;
@@ -58,7 +59,7 @@ TEST(ChiSquare, QuantilesAreThoseOfTheTables) {
 class Nees : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(Nees, ACorrectCovarianceIsInTheBandAsOftenAsExpected) {
-  const Walk r = walk(1.0);
+  const NoisyWalk r = noisyWalk(1.0);
   const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
   EXPECT_NEAR(share.mean, 6.0, 0.2);
   EXPECT_NEAR(share.median, 5.35, 0.2);
@@ -73,7 +74,7 @@ TEST_P(Nees, ACorrectCovarianceIsInTheBandAsOftenAsExpected) {
 }
 
 TEST_P(Nees, HalfTheSigmasAreTooSure) {
-  const Walk r = walk(0.5);
+  const NoisyWalk r = noisyWalk(0.5);
   const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
   EXPECT_NEAR(share.mean, 24.0, 0.8);
   EXPECT_LT(share.inside, GetParam() > 1 ? 0.05 : 0.35);
@@ -82,7 +83,7 @@ TEST_P(Nees, HalfTheSigmasAreTooSure) {
 }
 
 TEST_P(Nees, TwiceTheSigmasAreTooCautious) {
-  const Walk r = walk(2.0);
+  const NoisyWalk r = noisyWalk(2.0);
   const NeesShare share = neesOfMotions(r.truth, r.poses, GetParam());
   EXPECT_NEAR(share.mean, 1.5, 0.05);
   EXPECT_LT(share.inside, GetParam() > 1 ? 0.05 : 0.6);
@@ -93,7 +94,7 @@ TEST_P(Nees, TwiceTheSigmasAreTooCautious) {
 INSTANTIATE_TEST_SUITE_P(Windows, Nees, testing::Values(1U, 5U));
 
 TEST(NeesOfMotions, IsTheSameInAnyFrameOfTheMap) {
-  Walk r = walk(1.0);
+  NoisyWalk r = noisyWalk(1.0);
   const NeesShare before = neesOfMotions(r.truth, r.poses, 5);
   Vector6d far;
   far << -2, 1, 4, 1.3, -0.2, 0.4;
@@ -102,7 +103,7 @@ TEST(NeesOfMotions, IsTheSameInAnyFrameOfTheMap) {
 }
 
 TEST(NeesOfMotions, TheAxisThatIsTooSureIsNamed) {
-  Walk r = walk(1.0);
+  NoisyWalk r = noisyWalk(1.0);
   for (auto& pose : r.poses) pose.covariance(1, 1) /= 9.0;
   const NeesShare share = neesOfMotions(r.truth, r.poses, 5);
   EXPECT_GT(share.axes[1], 2.0);
@@ -111,12 +112,12 @@ TEST(NeesOfMotions, TheAxisThatIsTooSureIsNamed) {
 }
 
 TEST(NeesOfMotions, GapsBreakWindowsAndWithoutATruthThereAreNone) {
-  Walk r = walk(1.0);
+  NoisyWalk r = noisyWalk(1.0);
   EXPECT_EQ(neesOfMotions({}, r.poses, 1).windows, 0U);
   EXPECT_EQ(neesOfMotions({}, r.poses, 1).inside, 0.0);
   const NeesShare whole = neesOfMotions(r.truth, r.poses, 5);
-  EXPECT_EQ(whole.motions, static_cast<std::size_t>(kLength - 30));
-  EXPECT_EQ(whole.windows, static_cast<std::size_t>(kLength - 5 * 30 - 4));
+  EXPECT_EQ(whole.motions, static_cast<std::size_t>(kSteps - 30));
+  EXPECT_EQ(whole.windows, static_cast<std::size_t>(kSteps - 5 * 30 - 4));
   r.poses.erase(r.poses.begin() + 6000, r.poses.begin() + 6060);  // two seconds
   const NeesShare broken = neesOfMotions(r.truth, r.poses, 5);
   EXPECT_EQ(broken.motions, whole.motions - 60 - 30);
@@ -124,14 +125,14 @@ TEST(NeesOfMotions, GapsBreakWindowsAndWithoutATruthThereAreNone) {
 }
 
 TEST(NeesOfMotions, NoCovarianceIsTooSure) {
-  Walk r = walk(1.0);
+  NoisyWalk r = noisyWalk(1.0);
   for (auto& pose : r.poses) pose.covariance.setZero();
   EXPECT_EQ(neesOfMotions(r.truth, r.poses, 5).too_high, 1.0);
 }
 
-/// Constraints between keyframes of the walk whose errors are normal noise of sigmas().
+/// Constraints between keyframes of the walk whose errors are normal noise of trueSigmas().
 NeesShare ofConstraints(double said) {
-  const Walk r = walk(1.0);
+  const NoisyWalk r = noisyWalk(1.0);
   std::mt19937 random(6);
   std::normal_distribution<double> normal;
   std::vector<Keyframe> keyframes;
@@ -145,10 +146,10 @@ NeesShare ofConstraints(double said) {
     c.from = i / 2;
     c.to = i;
     Vector6d error;
-    for (int axis = 0; axis < 6; ++axis) error[axis] = sigmas()[axis] * normal(random);
+    for (int axis = 0; axis < 6; ++axis) error[axis] = trueSigmas()[axis] * normal(random);
     c.T_from_to = r.truth[static_cast<std::size_t>(c.from)].T_world_camera.inverse() *
                   r.truth[static_cast<std::size_t>(c.to)].T_world_camera * expSe3(error);
-    c.covariance = (said * sigmas()).cwiseAbs2().asDiagonal();
+    c.covariance = (said * trueSigmas()).cwiseAbs2().asDiagonal();
     constraints.push_back(c);
   }
   keyframes.back().stamp_ns += 1'000'000 * kMs;

@@ -26,7 +26,7 @@ std::size_t numberOf(const PageVertex& v) {
 }
 
 /// A wavy sheet of 12 x 9 m with `side` x `side` vertices; the colour of each is its number.
-TriangleMesh sheet(std::uint32_t side) {
+TriangleMesh sheetOf(std::uint32_t side) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < side * side; ++i) {
     const float u = static_cast<float>(i % side) / static_cast<float>(side - 1),
@@ -61,7 +61,7 @@ SurfelArrays surfels(std::size_t count) {
 }
 
 TEST(PageChunks, EveryTriangleComesBackWithinTheStepOfItsChunk) {
-  const TriangleMesh mesh = sheet(400);
+  const TriangleMesh mesh = sheetOf(400);
   const auto chunks = pageChunks(mesh);
   EXPECT_GE(chunks.size(), 3U);  // 160,000 vertices
   std::multiset<std::array<std::size_t, 3>> expected, found;
@@ -87,7 +87,7 @@ TEST(PageChunks, EveryTriangleComesBackWithinTheStepOfItsChunk) {
 }
 
 TEST(PageChunks, TheSameMeshGivesTheSameChunks) {
-  const TriangleMesh mesh = sheet(300);
+  const TriangleMesh mesh = sheetOf(300);
   const auto a = pageChunks(mesh), b = pageChunks(mesh);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].indices, b[i].indices);

@@ -8,19 +8,11 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "random_pose.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-Eigen::Isometry3d randomPose(std::mt19937& random, double size) {
-  std::uniform_real_distribution<double> unit(-size, size);
-  Vector6d twist;
-  for (int i = 0; i < 6; ++i) twist[i] = unit(random);
-  return expSe3(twist);
-}
 
 /// A random walk at 10 Hz and a noisy estimate of it in another frame.
 std::vector<PosePair> walk(unsigned seed, double noise, int length = 60) {

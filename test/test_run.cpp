@@ -13,10 +13,10 @@
 namespace pf {
 namespace {
 
-constexpr int kFrames = 20;
+constexpr int kRunFrames = 20;
 
 const SimulatedSequence& sequence() {
-  static const SimulatedSequence drawn("box_walker", kFrames);
+  static const SimulatedSequence drawn("box_walker", kRunFrames);
   return drawn;
 }
 
@@ -26,11 +26,11 @@ class SimulatedSource : public FrameSource {
   int bad = -1, broken = -1;
   std::atomic<int> read{0};
 
-  std::size_t frameCount() const override { return kFrames; }
+  std::size_t frameCount() const override { return kRunFrames; }
   std::optional<SourceFrame> next() override {
     const int i = read++;
     if (i == broken) throw std::runtime_error("the disk is gone");
-    if (i >= kFrames) return std::nullopt;
+    if (i >= kRunFrames) return std::nullopt;
     SourceFrame out;
     out.frame = sequence().frame(i).frame;
     if (i != bad) return out;
@@ -40,7 +40,7 @@ class SimulatedSource : public FrameSource {
   }
   RecordedPeople people() override {
     RecordedPeople people;
-    for (int i = 0; i < kFrames; ++i) people[sequence().stamp(i)] = sequence().frame(i).people;
+    for (int i = 0; i < kRunFrames; ++i) people[sequence().stamp(i)] = sequence().frame(i).people;
     return people;
   }
 };
@@ -97,7 +97,7 @@ Result runSerially() {
 
 TEST(RunPipeline, GivesWhatOneThreadGivesToTheBit) {
   const Result serial = runSerially();
-  ASSERT_EQ(serial.poses.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(serial.poses.size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_GT(serial.surfel_x.size(), 1000U);
   EXPECT_TRUE(runThreaded() == serial);
   for (const std::size_t threads : {1U, 2U, 3U}) {
@@ -113,7 +113,7 @@ TEST(RunPipeline, StopsOnRequestAndDoesNotReadFarAhead) {
   runPipeline(source, *pipeline,
               [&](const ProcessedFrame&, const std::string&) { return ++done < 3; });
   EXPECT_EQ(done, 3);
-  EXPECT_LT(source.read, kFrames);
+  EXPECT_LT(source.read, kRunFrames);
 }
 
 TEST(RunPipeline, AnUnreadableFrameIsReportedAndTheRestGoesOn) {
@@ -127,7 +127,7 @@ TEST(RunPipeline, AnUnreadableFrameIsReportedAndTheRestGoesOn) {
     defects.push_back(defect);
     return true;
   });
-  ASSERT_EQ(defects.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(defects.size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_EQ(defects[2], "not a whole image");
   EXPECT_EQ(result.outcomes[2], FrameOutcome::bad_input);
   EXPECT_EQ(defects[3], "");
@@ -138,7 +138,7 @@ TEST(RunPipeline, AnUnreadableFrameIsReportedAndTheRestGoesOn) {
 Result runWithDepth(const cv::Mat& depth) {
   const auto pipeline = makePipeline();
   Result result;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kRunFrames; ++i) {
     RgbdFrame frame = sequence().frame(i).frame;
     if (i >= 5 && i < 10) frame.depth = depth;
     result.add(pipeline->process(frame));
@@ -159,8 +159,9 @@ TEST(BadDepth, AllZeroOrAllNanIsNotFusedAndTrackingGoesOnAfterIt) {
       EXPECT_LT((result.poses[i] - sequence().pose(static_cast<int>(i)).matrix()).norm(), 0.02)
           << i;
     }
-    for (std::size_t i = 10; i < kFrames; ++i) EXPECT_EQ(result.outcomes[i], FrameOutcome::fused);
-    EXPECT_LT((result.poses.back() - sequence().pose(kFrames - 1).matrix()).norm(), 0.05);
+    for (std::size_t i = 10; i < kRunFrames; ++i)
+      EXPECT_EQ(result.outcomes[i], FrameOutcome::fused);
+    EXPECT_LT((result.poses.back() - sequence().pose(kRunFrames - 1).matrix()).norm(), 0.05);
   }
 }
 

@@ -10,12 +10,11 @@
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run_report.hpp"
+#include "random_pose.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 ProcessedFrame frameAt(int i, FrameOutcome outcome) {
   ProcessedFrame frame;

@@ -16,7 +16,7 @@ using Eigen::Isometry3d;
 
 constexpr TimeSpan kWalk{0.0, 40.0};
 
-LegsConfig exactConfig() {
+LegsConfig exactLegs() {
   LegsConfig c;
   c.encoder_counts = 0;
   c.scale_percent = c.turn_percent = c.slip_every_s = 0.0;
@@ -43,7 +43,7 @@ TEST(SimulatorLegs, WithoutErrorsOdometryAndNeckMakeTheCamerasPath) {
   const auto walks = walkingRobot(), falls = fallingRobot();
   const auto hand = makeHandHeld(HandHeld(), 5U);
   for (const CameraPath* path : {walks.get(), falls.get(), hand.get()}) {
-    const auto samples = senseLegs(*path, exactConfig(), kWalk, 7U);
+    const auto samples = senseLegs(*path, exactLegs(), kWalk, 7U);
     ASSERT_EQ(samples.size(), 2001U);
     for (const LegSample& sample : samples) {
       EXPECT_LT(motionError(*path, samples.front(), sample), 1e-6) << sample.time_s;
@@ -65,7 +65,7 @@ TEST(SimulatorLegs, OdometryBeginsAtItsOriginAndIsLevel) {
 
 TEST(SimulatorLegs, TheBodyFacesWhereItWalksAndTheNeckDoesTheRest) {
   const auto path = walkingRobot();
-  const LegsConfig config = exactConfig();
+  const LegsConfig config = exactLegs();
   const Body body(*path, config, kWalk);
   int ahead = 0, aside = 0;
   for (double t = 0.0; t < kWalk.end_s; t += 0.1) {
@@ -88,7 +88,7 @@ TEST(SimulatorLegs, TheBodyFacesWhereItWalksAndTheNeckDoesTheRest) {
 }
 
 TEST(SimulatorLegs, TheNeckIsMeasuredInStepsOfItsEncoders) {
-  LegsConfig config = exactConfig();
+  LegsConfig config = exactLegs();
   config.encoder_counts = 1024;
   const double step_rad = 2.0 * M_PI / 1024;
   const auto path = walkingRobot();
@@ -104,7 +104,7 @@ TEST(SimulatorLegs, TheNeckIsMeasuredInStepsOfItsEncoders) {
 }
 
 TEST(SimulatorLegs, DriftGrowsByTheSettings) {
-  LegsConfig config = exactConfig();
+  LegsConfig config = exactLegs();
   config.drift_m_per_m = 0.02;
   config.drift_deg_per_turn = 3.0;
   const auto path = walkingRobot();
@@ -115,7 +115,7 @@ TEST(SimulatorLegs, DriftGrowsByTheSettings) {
     const auto samples = senseLegs(*path, config, kWalk, seed);
     const LegSample& last = samples.back();
     const Isometry3d sensed = samples.front().T_odom_base.inverse() * last.T_odom_base;
-    const auto exact = senseLegs(*path, exactConfig(), kWalk, seed);
+    const auto exact = senseLegs(*path, exactLegs(), kWalk, seed);
     const Isometry3d truth = exact.front().T_odom_base.inverse() * exact.back().T_odom_base;
     place += std::pow(sensed.translation().z() - truth.translation().z(), 2);
     heading += std::pow(headingOf(sensed.linear()) - headingOf(truth.linear()), 2);
@@ -129,12 +129,12 @@ TEST(SimulatorLegs, DriftGrowsByTheSettings) {
 }
 
 TEST(SimulatorLegs, AScaleMakesAllWaysLongerOrShorter) {
-  LegsConfig config = exactConfig();
+  LegsConfig config = exactLegs();
   config.scale_percent = 5.0;
   const auto path = walkingRobot();
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const auto samples = senseLegs(*path, config, {0.0, 12.0}, seed);
-    const auto exact = senseLegs(*path, exactConfig(), {0.0, 12.0}, seed);
+    const auto exact = senseLegs(*path, exactLegs(), {0.0, 12.0}, seed);
     const double scale =
         samples.back().T_odom_base.translation().x() / exact.back().T_odom_base.translation().x();
     EXPECT_LE(std::abs(scale - 1.0), 0.05);
@@ -143,7 +143,7 @@ TEST(SimulatorLegs, AScaleMakesAllWaysLongerOrShorter) {
 }
 
 TEST(SimulatorLegs, ASlipIsAStepThatIsNotThere) {
-  LegsConfig config = exactConfig();
+  LegsConfig config = exactLegs();
   config.slip_every_s = 6.0;
   config.slip_m = 0.08;
   const auto path = walkingRobot();
@@ -164,7 +164,7 @@ TEST(SimulatorLegs, ASlipIsAStepThatIsNotThere) {
 }
 
 TEST(SimulatorLegs, LegsMeasureAnythingInAFallAndTheTruthOutsideOfIt) {
-  LegsConfig config = exactConfig();
+  LegsConfig config = exactLegs();
   config.falls_confuse = true;
   const auto path = fallingRobot();
   const auto falls = path->events();

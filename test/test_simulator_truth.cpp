@@ -15,7 +15,7 @@
 namespace pf::simulator {
 namespace {
 
-bool same(const cv::Mat& a, const cv::Mat& b) {
+bool samePicture(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
 }
 
@@ -183,16 +183,16 @@ TEST(SimulatorTruth, EachRowOfARollingShutterIsThatOfAGlobalOneAtItsMoment) {
 TEST(SimulatorTruth, SameSeedSameBytesOtherSeedOtherBytes) {
   const auto a = someFrames(smallScenario(), 2), b = someFrames(smallScenario(), 2);
   for (int i = 0; i < 2; ++i) {
-    EXPECT_TRUE(same(a[i].frame.color, b[i].frame.color));
-    EXPECT_TRUE(same(a[i].frame.depth, b[i].frame.depth));
-    EXPECT_TRUE(same(a[i].mask, b[i].mask));
+    EXPECT_TRUE(samePicture(a[i].frame.color, b[i].frame.color));
+    EXPECT_TRUE(samePicture(a[i].frame.depth, b[i].frame.depth));
+    EXPECT_TRUE(samePicture(a[i].mask, b[i].mask));
     EXPECT_EQ(a[i].depth_stamp_ns, b[i].depth_stamp_ns);
   }
   ScenarioChanges changes;
   changes.seed = 99;
   const auto c = someFrames(load(smallScene(), changes), 1);
-  EXPECT_FALSE(same(a[0].frame.color, c[0].frame.color));
-  EXPECT_FALSE(same(a[0].frame.depth, c[0].frame.depth));
+  EXPECT_FALSE(samePicture(a[0].frame.color, c[0].frame.color));
+  EXPECT_FALSE(samePicture(a[0].frame.depth, c[0].frame.depth));
 }
 
 TEST(SimulatorTruth, OneThreadMakesTheSameBytesAsMany) {
@@ -200,9 +200,9 @@ TEST(SimulatorTruth, OneThreadMakesTheSameBytesAsMany) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const auto serial = someFrames(smallScenario(), 2);
   for (int i = 0; i < 2; ++i) {
-    EXPECT_TRUE(same(many[i].frame.color, serial[i].frame.color));
-    EXPECT_TRUE(same(many[i].frame.depth, serial[i].frame.depth));
-    EXPECT_TRUE(same(many[i].mask, serial[i].mask));
+    EXPECT_TRUE(samePicture(many[i].frame.color, serial[i].frame.color));
+    EXPECT_TRUE(samePicture(many[i].frame.depth, serial[i].frame.depth));
+    EXPECT_TRUE(samePicture(many[i].mask, serial[i].mask));
   }
 }
 

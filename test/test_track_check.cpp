@@ -6,11 +6,11 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/evaluation/track_check.hpp"
+#include "random_pose.hpp"
 
 namespace pf {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr int kLength = 200;  // 20 s at 10 Hz
 
 /// A walk in a circle, looking ahead.

@@ -45,7 +45,7 @@ ModelView modelOf(const cv::Mat& depth_m, bool turned = false) {
   return view;
 }
 
-WorkingFrame noisyFrame(const cv::Mat& depth_m) {
+WorkingFrame frameWithNoise(const cv::Mat& depth_m) {
   std::mt19937 random(5);
   std::normal_distribution<float> normal;
   RgbdFrame frame;
@@ -67,14 +67,14 @@ WorkingFrame noisyFrame(const cv::Mat& depth_m) {
 }
 
 TEST(ViewAgreement, NoiseOfTheNormalsDoesNotCountAgainstAPlace) {
-  const ViewAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner()));
+  const ViewAgreement agreement = compareViews(frameWithNoise(corner()), modelOf(corner()));
   EXPECT_GT(agreement.overlap, 0.95);
   EXPECT_GT(agreement.agreeing, 0.95);
   EXPECT_LT(agreement.hidden + agreement.seen_through, 0.05);
 }
 
 TEST(ViewAgreement, SurfacesThatFaceElsewhereDoNotAgreeThoughTheyAreAsFar) {
-  const ViewAgreement agreement = compareViews(noisyFrame(corner()), modelOf(corner(), true));
+  const ViewAgreement agreement = compareViews(frameWithNoise(corner()), modelOf(corner(), true));
   EXPECT_LT(agreement.agreeing, 0.1);
 }
 
@@ -83,10 +83,10 @@ TEST(ViewAgreement, WhatStandsBeforeTheMapHidesItAndWhatIsMissingIsSeenThrough) 
   cv::Mat with_box = corner();
   with_box(cv::Rect(32, 60, 64, 96)).setTo(2.0F);
   const double part = 64.0 * 96.0 / (320.0 * 240.0);
-  const ViewAgreement came = compareViews(noisyFrame(with_box), modelOf(empty));
+  const ViewAgreement came = compareViews(frameWithNoise(with_box), modelOf(empty));
   EXPECT_NEAR(came.hidden, part, 0.02);
   EXPECT_LT(came.seen_through, 0.01);
-  const ViewAgreement went = compareViews(noisyFrame(empty), modelOf(with_box));
+  const ViewAgreement went = compareViews(frameWithNoise(empty), modelOf(with_box));
   EXPECT_NEAR(went.seen_through, part, 0.02);
   EXPECT_LT(went.hidden, 0.01);
 }

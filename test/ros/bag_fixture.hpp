@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../temporary_folder.hpp"
+#include "message_parts.hpp"
 #include "posefusion_ros/bag_source.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/stage_messages.hpp"
@@ -30,13 +31,6 @@ inline pf::PinholeCamera camera() {
   c.cx = 31.5;
   c.cy = 23.5;
   return c;
-}
-
-inline std_msgs::Header headerAt(std::int64_t stamp_ns) {
-  std_msgs::Header header;
-  header.stamp = toTime(stamp_ns);
-  header.frame_id = "camera";
-  return header;
 }
 
 inline cv::Mat colorAt(std::int64_t stamp_ns) {
@@ -62,13 +56,13 @@ class BagFile {
     bag_.write(topic, toTime(now_ns_), message);
   }
   void color(std::int64_t stamp_ns, const std::string& topic = "/camera/rgb/image_color") {
-    write(topic, *toImage(colorAt(stamp_ns), enc::RGB8, headerAt(stamp_ns)));
+    write(topic, *toImage(colorAt(stamp_ns), enc::RGB8, headerAt(stamp_ns, "camera")));
   }
   void depth(std::int64_t stamp_ns, const std::string& topic = "/camera/depth_registered/image") {
-    write(topic, *toImage(depthAt(stamp_ns), enc::TYPE_16UC1, headerAt(stamp_ns)));
+    write(topic, *toImage(depthAt(stamp_ns), enc::TYPE_16UC1, headerAt(stamp_ns, "camera")));
   }
   void info(const std::string& topic = "/camera/rgb/camera_info") {
-    write(topic, toCameraInfo(camera(), headerAt(now_ns_)));
+    write(topic, toCameraInfo(camera(), headerAt(now_ns_, "camera")));
   }
   void close() { bag_.close(); }
 
@@ -81,10 +75,6 @@ inline std::vector<SourceFrame> readAll(pf::FrameSource& source) {
   std::vector<SourceFrame> frames;
   while (auto frame = source.next()) frames.push_back(*frame);
   return frames;
-}
-
-inline bool samePixels(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 class BagSourceTest : public testing::Test {

@@ -11,7 +11,7 @@
 namespace posefusion_ros {
 namespace {
 
-constexpr int kWaiting = 50, kThere = 40;
+constexpr int kWaiting = 50, kFramesThere = 40;
 
 pf::Config closeKeyframes() {
   pf::Config config;
@@ -27,9 +27,9 @@ std::vector<pf::LoopQuestion> questionsOfALostMapper() {
   std::vector<pf::LoopQuestion> asked;
   std::int64_t stamp_ns = 0;
   const auto see = [&](int index, bool covered) {
-    const int turn = index % (2 * kThere);
+    const int turn = index % (2 * kFramesThere);
     pf::StaticFrame input;
-    input.frame = emptyRoom().frame(turn < kThere ? turn : 2 * kThere - 1 - turn).frame;
+    input.frame = emptyRoom().frame(turn < kFramesThere ? turn : 2 * kFramesThere - 1 - turn).frame;
     input.frame.stamp_ns = stamp_ns += 33'333'333;
     if (covered) input.frame.depth = cv::Mat::zeros(input.frame.depth.size(), CV_16UC1);
     mapper.process(input);
@@ -38,7 +38,7 @@ std::vector<pf::LoopQuestion> questionsOfALostMapper() {
   int next = 0;
   for (; next < 2000 && asked.size() < kWaiting; ++next) see(next, false);
   for (int i = 0; i < 30; ++i) see(next, true);
-  for (int i = 0; i < 10 && !asked.back().place; ++i) see(next + kThere / 2, false);
+  for (int i = 0; i < 10 && !asked.back().place; ++i) see(next + kFramesThere / 2, false);
   return asked;
 }
 

@@ -27,7 +27,7 @@ pf::PinholeCamera cameraOf(int width, int height) {
   return camera;
 }
 
-std_msgs::Header headerAt(double stamp_s) {
+std_msgs::Header headerAtSecond(double stamp_s) {
   std_msgs::Header header;
   header.stamp = ros::Time(stamp_s);
   header.frame_id = "eye";
@@ -54,13 +54,13 @@ cv::Mat allDepths(int width, int height) {
 }
 
 InputImage raw(const cv::Mat& pixels, const char* encoding, double stamp_s, double offset_s = 0) {
-  return InputImage(sensor_msgs::ImageConstPtr(toImage(pixels, encoding, headerAt(stamp_s))),
+  return InputImage(sensor_msgs::ImageConstPtr(toImage(pixels, encoding, headerAtSecond(stamp_s))),
                     offset_s);
 }
 
 sensor_msgs::CameraInfoConstPtr infoOf(int width, int height) {
   return boost::make_shared<sensor_msgs::CameraInfo>(
-      toCameraInfo(cameraOf(width, height), headerAt(7)));
+      toCameraInfo(cameraOf(width, height), headerAtSecond(7)));
 }
 
 InputPairing::Set someSet() {

@@ -9,19 +9,14 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "../temporary_folder.hpp"
+#include "message_parts.hpp"
 #include "posefusion/core/error.hpp"
 
 namespace posefusion_ros {
 namespace {
 
-using pf::InputError;
-
-std_msgs::Header headerAt(std::int64_t stamp_ns) {
-  std_msgs::Header header;
-  header.stamp = toTime(stamp_ns);
-  header.frame_id = "optical";
-  return header;
-}
+using pf::errorOf;
 
 cv::Mat noise(int type) {
   cv::Mat pixels(8, 12, type);
@@ -39,20 +34,6 @@ pf::PinholeCamera someCamera() {
   camera.cx = 5.25;
   camera.cy = 3.75;
   return camera;
-}
-
-template <typename Function>
-std::string errorOf(Function function) {
-  try {
-    function();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool same(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 TEST(RosConversions, StampsKeepTheirNanoseconds) {
@@ -78,9 +59,9 @@ TEST(RosConversions, OtherColourOrdersGiveTheSamePixels) {
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   cv::cvtColor(rgb, rgba, cv::COLOR_RGB2RGBA);
   cv::cvtColor(rgb, bgra, cv::COLOR_RGB2BGRA);
-  EXPECT_TRUE(same(toColor(toImage(bgr, "bgr8", headerAt(0))), rgb));
-  EXPECT_TRUE(same(toColor(toImage(rgba, "rgba8", headerAt(0))), rgb));
-  EXPECT_TRUE(same(toColor(toImage(bgra, "bgra8", headerAt(0))), rgb));
+  EXPECT_TRUE(samePixels(toColor(toImage(bgr, "bgr8", headerAt(0))), rgb));
+  EXPECT_TRUE(samePixels(toColor(toImage(rgba, "rgba8", headerAt(0))), rgb));
+  EXPECT_TRUE(samePixels(toColor(toImage(bgra, "bgra8", headerAt(0))), rgb));
 }
 
 TEST(RosConversions, GreyBecomesEqualChannels) {
@@ -89,7 +70,7 @@ TEST(RosConversions, GreyBecomesEqualChannels) {
   for (int i = 0; i < 3; ++i) {
     cv::Mat channel;
     cv::extractChannel(rgb, channel, i);
-    EXPECT_TRUE(same(channel, grey));
+    EXPECT_TRUE(samePixels(channel, grey));
   }
 }
 
@@ -114,7 +95,7 @@ TEST(RosConversions, EachBayerPatternGivesItsColour) {
   for (const auto& [encoding, channels] : patterns) {
     const auto image = toImage(mosaic(color, channels), "mono8", headerAt(0));
     image->encoding = encoding;
-    EXPECT_TRUE(same(toColor(image), expected)) << encoding;
+    EXPECT_TRUE(samePixels(toColor(image), expected)) << encoding;
   }
 }
 
@@ -152,7 +133,7 @@ TEST(RosConversions, RowsMayBePadded) {
     std::copy_n(image->data.begin() + v * image->step, image->step,
                 padded.data.begin() + v * padded.step);
   }
-  EXPECT_TRUE(same(toColor(boost::make_shared<sensor_msgs::Image>(padded)), tight));
+  EXPECT_TRUE(samePixels(toColor(boost::make_shared<sensor_msgs::Image>(padded)), tight));
 }
 
 TEST(RosConversions, ErrorsNameTheEncodingAndTheSizes) {
@@ -171,7 +152,7 @@ TEST(RosConversions, ErrorsNameTheEncodingAndTheSizes) {
 TEST(RosConversions, AMessageWithTooFewBytesIsAnError) {
   const auto color = toImage(noise(CV_8UC3), "rgb8", headerAt(0));
   color->data.resize(color->data.size() / 2);
-  EXPECT_THROW(toColor(color), InputError);
+  EXPECT_THROW(toColor(color), pf::InputError);
   color->data.clear();
   EXPECT_TRUE(toColor(color).empty());
 }
@@ -248,7 +229,7 @@ TEST(RosConversions, DepthInOtherUnitsBecomesTheMetresThatTheCoreUses) {
   cv::Mat expected, actual;
   depthInMetres(frame, 0.01, 100, expected);
   depthInMetres(again, 0.01, 100, actual);
-  EXPECT_TRUE(same(actual, expected));
+  EXPECT_TRUE(samePixels(actual, expected));
 }
 
 }  // namespace

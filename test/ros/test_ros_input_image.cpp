@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "compressed_messages.hpp"
+#include "message_parts.hpp"
 
 namespace posefusion_ros {
 namespace {
@@ -38,20 +39,16 @@ InputImage raw(const cv::Mat& pixels, const char* encoding) {
   return InputImage(sensor_msgs::ImageConstPtr(toImage(pixels, encoding, header())));
 }
 
-bool same(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
 std::string depthError(const sensor_msgs::CompressedImageConstPtr& message) {
   return pf::errorOf([&] { toDepth(InputImage(message)); });
 }
 
 TEST(InputImage, CompressedImagesGiveThePixelsThatWentIn) {
   const cv::Mat color = noise(8, 12, CV_8UC3), depth = noise(8, 12, CV_16UC1);
-  EXPECT_TRUE(same(toColor(InputImage(compressedColor(color, header()))), color));
+  EXPECT_TRUE(samePixels(toColor(InputImage(compressedColor(color, header()))), color));
   for (const auto& message : {compressedDepth(depth, header()), plainDepth(depth, header(), ".png"),
                               plainDepth(depth, header(), ".tiff")}) {
-    EXPECT_TRUE(same(toDepth(InputImage(message)), depth)) << message->format;
+    EXPECT_TRUE(samePixels(toDepth(InputImage(message)), depth)) << message->format;
   }
 }
 
@@ -61,7 +58,8 @@ TEST(InputImage, ThePngItselfShowsWhetherItHasAHeader) {
        {compressedDepth(depth, header()), plainDepth(depth, header(), ".png")}) {
     auto unnamed = boost::make_shared<sensor_msgs::CompressedImage>(*message);
     unnamed->format = "png";
-    EXPECT_TRUE(same(toDepth(InputImage(sensor_msgs::CompressedImageConstPtr(unnamed))), depth));
+    EXPECT_TRUE(
+        samePixels(toDepth(InputImage(sensor_msgs::CompressedImageConstPtr(unnamed))), depth));
   }
 }
 

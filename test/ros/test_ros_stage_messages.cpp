@@ -7,6 +7,7 @@
 #include <map>
 
 #include "../temporary_folder.hpp"
+#include "message_parts.hpp"
 #include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/model_view.hpp"
 
@@ -14,17 +15,6 @@ namespace posefusion_ros {
 namespace {
 
 using pf::errorOf;
-
-std_msgs::Header headerAt(std::int64_t stamp_ns) {
-  std_msgs::Header header;
-  header.stamp = toTime(stamp_ns);
-  header.frame_id = "optical";
-  return header;
-}
-
-bool same(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
 
 TEST(StageMessages, PeopleGoThereAndBack) {
   pf::People people;
@@ -48,8 +38,8 @@ TEST(StageMessages, TheMaskOfPeopleIsTheMessagesOwn) {
   people.mask.probability.at<std::uint8_t>(59, 3) = 255;
   PeopleMsg message = toMessage(people, headerAt(1));
   const auto back = fromMessage(message);
-  EXPECT_TRUE(same(back.mask.probability, people.mask.probability));
-  EXPECT_TRUE(same(back.mask.owner, people.mask.owner));
+  EXPECT_TRUE(samePixels(back.mask.probability, people.mask.probability));
+  EXPECT_TRUE(samePixels(back.mask.owner, people.mask.owner));
   EXPECT_EQ(back.mask.probability.data, message.mask.data()) << "no copy";
   EXPECT_TRUE(fromMessage(toMessage(pf::People(), headerAt(1))).mask.empty());
   message.mask.pop_back();
@@ -149,7 +139,7 @@ TEST(StageMessages, TheModelViewKeepsEveryPlaneTheSegmenterReads) {
   ASSERT_TRUE(placed.T_world_map);
   EXPECT_TRUE(placed.T_world_map->matrix() == view.T_world_map->matrix());
   for (const auto plane : {&pf::ModelView::depth_m, &pf::ModelView::stable}) {
-    EXPECT_TRUE(same(read.*plane, view.*plane));
+    EXPECT_TRUE(samePixels(read.*plane, view.*plane));
   }
 }
 
