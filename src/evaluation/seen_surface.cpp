@@ -3,13 +3,13 @@
 
 #include <cmath>
 
+#include "depth_tolerance.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
 namespace {
 
-constexpr float kTolerance_m = 0.05F, kSigmas = 3.0F;
 constexpr float kFacingOfView = 0.342F;  // 70 degrees
 constexpr std::size_t kSamplesAtOnce = 4096;
 
@@ -33,7 +33,7 @@ void SeenSurface::add(const RgbdFrame& frame, const cv::Mat& mask,
     const auto row = static_cast<int>(v), col = static_cast<int>(u);
     const float z = depth_m_.at<float>(row, col);
     if (z <= 0 || (!mask.empty() && mask.at<std::uint8_t>(row, col) != 0)) return false;
-    return std::abs(z - p.z()) < kTolerance_m + kSigmas * sensor_.sigma(z);
+    return std::abs(z - p.z()) < depthTolerance(sensor_, z);
   };
   parallelFor(seen_.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depth_tolerance.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 
 namespace pf {
 namespace {
 
 constexpr int kShrink = 4;  // a share needs no more
-constexpr float kKnown_m = 0.05F, kKnownSigmas = 3.0F;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ double ViewOverlap::of(const RgbdFrame& frame, const Eigen::Isometry3d& T_map_ca
       const float seen = small_m_.at<float>(v, u), mapped = view_.depth_m.at<float>(v, u);
       if (seen <= 0) continue;
       ++valid;
-      const float tolerance = kKnown_m + kKnownSigmas * sensor.sigma(seen);
+      const float tolerance = depthTolerance(sensor, seen);
       known += mapped > 0 && std::abs(seen - mapped) < tolerance ? 1 : 0;
     }
   }
