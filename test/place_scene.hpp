@@ -15,7 +15,7 @@ namespace pf {
 struct MappedRoom {
   SimulatedSequence sequence{"empty_box", 12};
   SurfelMap map{stableAtOnce()};
-  MapPoints points;
+  PointPyramid points;
   Eigen::Vector3d up;
 
   static MapConfig stableAtOnce() {
@@ -27,8 +27,8 @@ struct MappedRoom {
   MappedRoom() {
     Fuser fuser;
     for (int i = 0; i < sequence.frameCount(); ++i) fuser.fuse(frame(i), sequence.pose(i), map);
-    points = thinnedPoints(map);
-    const auto levels = findLevels(orientedPoints(points), -Eigen::Vector3d::UnitY(), 0.9);
+    points = pointPyramid(thinnedPoints(map));
+    const auto levels = findLevels(orientedPoints(points.front()), -Eigen::Vector3d::UnitY(), 0.9);
     up = levels ? levels->up : Eigen::Vector3d(0, 0, 0);
   }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+
 #include "place_scene.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/loop/worker.hpp"
@@ -27,11 +29,78 @@ TEST(Levels, NoneWhereNothingFacesUp) {
 }
 
 TEST(MapPoints, AreThinAndStable) {
-  const MapPoints& points = room().points;
+  const MapPoints& points = room().points.front();
   ASSERT_GT(points.size(), 100U);
   EXPECT_LT(points.size(), room().map.stableCount() / 2);
   const MapPoints coarse = thinnedPoints(room().map, kFirstFragment, 0.2);
   EXPECT_LT(coarse.size(), points.size() / 2);
+}
+
+TEST(MapPoints, CoarserOnesAreOnTheSameSurfaces) {
+  // Two walls that meet, and the back of one of them.
+  MapPoints walls;
+  for (int i = 0; i < 3000; ++i) {
+    const int wall = i % 3;
+    const float a = 0.011F * static_cast<float>(i / 3 % 50),
+                b = 0.017F * static_cast<float>(i / 150);
+    walls.x.push_back(wall == 1 ? 0.7F : a + 0.13F);
+    walls.y.push_back(wall == 1 ? a + 0.01F : 0.01F);
+    walls.z.push_back(b - 0.3F);
+    walls.nx.push_back(wall == 1 ? -1.0F : 0.0F);
+    walls.ny.push_back(wall == 1 ? 0.0F : wall == 0 ? 1.0F : -1.0F);
+    walls.nz.push_back(0.0F);
+    walls.intensity.push_back(wall == 1 ? 200.0F : 50.0F);
+  }
+  const MapPoints coarse = coarser(walls, 0.12);
+  EXPECT_LT(coarse.size(), walls.size() / 20);
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    const bool is_second = coarse.nx[i] != 0;
+    EXPECT_NEAR(is_second ? coarse.x[i] - 0.7F : coarse.y[i] - 0.01F, 0.0F, 1e-5F);
+    EXPECT_NEAR(std::abs(is_second ? coarse.nx[i] : coarse.ny[i]), 1.0F, 1e-5F);
+    EXPECT_NEAR(coarse.intensity[i], is_second ? 200.0F : 50.0F, 1e-3F);
+  }
+  const MapPoints again = coarser(coarse, 0.12);
+  EXPECT_EQ(again.size(), coarse.size()) << "each is alone in its voxel already";
+}
+
+TEST(PlaceSearch, WhatIsOutOfReachChangesNothing) {
+  // Neither the pose found nor a bit of its score, however large the map.
+  MapPoints large = room().points.front();
+  const std::size_t count = large.size();
+  for (std::size_t i = 0; i < 5 * count; ++i) {
+    const std::size_t from = i % count;
+    large.x.push_back(large.x[from] + 40.0F);
+    large.y.push_back(large.y[from] - 7.0F * static_cast<float>(i / count));
+    for (auto* array : {&large.z, &large.nx, &large.ny, &large.nz, &large.intensity}) {
+      array->push_back((*array)[from]);
+    }
+  }
+  const PlaceQuery query = placeQuery(room().frame(7));
+  const MapPose around{0, afterFall(room().sequence.pose(7), 0.5, 0.3)};
+  const auto alone = searchPlaces(room().points, query, around, room().up, {});
+  const auto found = searchPlaces(pointPyramid(large), query, around, room().up, {});
+  ASSERT_FALSE(alone.empty());
+  ASSERT_EQ(found.size(), alone.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].score, alone[i].score);
+    EXPECT_EQ(found[i].pose.T_map_camera.matrix(), alone[i].pose.T_map_camera.matrix());
+  }
+}
+
+TEST(PlaceSearch, TheOrderOfThePointsChangesNothing) {
+  MapPoints turned = room().points.front();
+  for (auto* array :
+       {&turned.x, &turned.y, &turned.z, &turned.nx, &turned.ny, &turned.nz, &turned.intensity}) {
+    std::reverse(array->begin(), array->end());
+  }
+  PointPyramid alone = {room().points.front()}, reversed = {turned};
+  const PlaceQuery query = placeQuery(room().frame(7));
+  const MapPose around{0, room().sequence.pose(5)};
+  const auto a = searchPlaces(alone, query, around, room().up, {});
+  const auto b = searchPlaces(reversed, query, around, room().up, {});
+  ASSERT_FALSE(a.empty());
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].score, b[i].score);
 }
 
 TEST(PlaceSearch, FindsThePlaceAfterAFall) {
@@ -76,7 +145,7 @@ WorkingFrame seenFrom(const Eigen::Isometry3d& T_map_camera) {
 }
 
 TEST(PlaceSearch, FindsACameraThatLiesOnItsSide) {
-  const auto levels = findLevels(orientedPoints(room().points), room().up, 0.3);
+  const auto levels = findLevels(orientedPoints(room().points.front()), room().up, 0.3);
   ASSERT_TRUE(levels);
   const Eigen::Isometry3d standing = room().sequence.pose(11);
   const double high_m = room().up.dot(standing.translation()) - levels->lowest_m;
@@ -108,7 +177,8 @@ TEST(PlaceSearch, CandidatesAreSortedAndApart) {
 TEST(PlaceSearch, GivesNothingOfNothing) {
   const PlaceQuery query = placeQuery(room().frame(0));
   const Eigen::Isometry3d T = room().sequence.pose(0);
-  EXPECT_TRUE(searchPlaces(MapPoints{}, query, {0, T}, room().up, PlaceSearchConfig{}).empty());
+  EXPECT_TRUE(
+      searchPlaces(pointPyramid({}), query, {0, T}, room().up, PlaceSearchConfig{}).empty());
   PlaceQuery blind = query;
   blind.depth_m = cv::Mat::zeros(query.depth_m.size(), CV_32FC1);
   EXPECT_TRUE(searchPlaces(room().points, blind, {0, T}, room().up, PlaceSearchConfig{}).empty());

@@ -67,11 +67,11 @@ void HeadingScores::compute(const Panorama& panorama, const QueryRays& rays, int
 }
 
 QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
-                 double step_m) {
+                 double step_m, int every) {
   QueryRays rays;
   const double bin = shape.bin_rad();
-  for (int v = 0; v < query.depth_m.rows; ++v) {
-    for (int u = 0; u < query.depth_m.cols; ++u) {
+  for (int v = 0; v < query.depth_m.rows; v += every) {
+    for (int u = 0; u < query.depth_m.cols; u += every) {
       const float depth = query.depth_m.at<float>(v, u);
       if (depth <= 0) continue;
       const Eigen::Vector3d p = R * query.camera.unproject(u, v, depth);

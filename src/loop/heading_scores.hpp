@@ -19,9 +19,10 @@ struct QueryRays {
 };
 
 /// Pixels that show something, as directions of a camera with orientation `R` in the grid, of which
-/// positions are `step_m` apart; rows count from elevation 0 until the lowest is known.
+/// positions are `step_m` apart; rows count from elevation 0 until the lowest is known. Of every so
+/// many pixels (`every`) along a row and a column one.
 QueryRays raysOf(const PlaceQuery& query, const Eigen::Matrix3d& R, const PanoramaShape& shape,
-                 double step_m);
+                 double step_m, int every);
 
 /// How the query fits at each heading from one position. As long as there are headings.
 struct HeadingScores {

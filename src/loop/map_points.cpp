@@ -2,14 +2,18 @@
 #include "posefusion/loop/map_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
 namespace pf {
 namespace {
 
-/// Voxel and facing, packed: 20 bits for each coordinate.
-std::uint64_t cellOf(const SurfelArrays& s, std::size_t i, float inverse_voxel) {
+constexpr int kDensities = 3;
+
+/// Voxel and facing, packed: 20 bits for each coordinate. Of surfels or points.
+template <typename Arrays>
+std::uint64_t cellOf(const Arrays& s, std::size_t i, float inverse_voxel) {
   const auto index = [&](float value) {
     constexpr std::int64_t kHalf = 1 << 19;
     const auto cell = static_cast<std::int64_t>(std::floor(value * inverse_voxel)) + kHalf;
@@ -57,6 +61,42 @@ MapPoints thinnedPoints(const SurfelMap& map, int fragment, double voxel_m) {
     set(points, found->second, s, i);
   });
   return points;
+}
+
+MapPoints coarser(const MapPoints& points, double voxel_m) {
+  MapPoints sums;
+  sums.voxel_m = static_cast<float>(voxel_m);
+  std::unordered_map<std::uint64_t, std::size_t> slots;
+  std::vector<float> count;
+  const auto arraysOf = [](auto& p) {
+    return std::array{&p.x, &p.y, &p.z, &p.nx, &p.ny, &p.nz, &p.intensity};
+  };
+  const auto from = arraysOf(points);
+  const auto to = arraysOf(sums);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [found, is_new] =
+        slots.try_emplace(cellOf(points, i, 1.0F / sums.voxel_m), count.size());
+    if (is_new) {
+      count.push_back(0.0F);
+      for (auto* array : to) array->push_back(0.0F);
+    }
+    for (std::size_t k = 0; k < to.size(); ++k) (*to[k])[found->second] += (*from[k])[i];
+    count[found->second] += 1.0F;
+  }
+  for (std::size_t i = 0; i < count.size(); ++i) {
+    for (auto* array : {&sums.x, &sums.y, &sums.z, &sums.intensity}) (*array)[i] /= count[i];
+    const float length = std::hypot(sums.nx[i], sums.ny[i], sums.nz[i]);
+    for (auto* array : {&sums.nx, &sums.ny, &sums.nz}) (*array)[i] /= length;
+  }
+  return sums;
+}
+
+PointPyramid pointPyramid(MapPoints densest) {
+  PointPyramid pyramid = {std::move(densest)};
+  while (pyramid.size() < kDensities) {
+    pyramid.push_back(coarser(pyramid.back(), 2.0 * pyramid.back().voxel_m));
+  }
+  return pyramid;
 }
 
 }  // namespace pf

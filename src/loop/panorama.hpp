@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
-#include "posefusion/loop/map_points.hpp"
+#include "point_cubes.hpp"
 
 namespace pf {
 
@@ -24,8 +26,9 @@ struct PanoramaShape {
 /// the headings twice over, so that all headings of a pixel of a camera are one run of memory.
 class Panorama {
  public:
-  /// `points` in a frame whose z axis is up.
-  void draw(const MapPoints& points, const float position[3], const PanoramaShape& shape);
+  /// `cubes` in a frame whose z axis is up. What is far is drawn from as many points as its bins
+  /// need. The bits do not depend on the order of the points.
+  void draw(const PointCubes& cubes, const Eigen::Vector3f& position, const PanoramaShape& shape);
 
   /// First of the runs of a column (0 .. columns - 1) in a row.
   const float* range(int row, int column) const { return &range_[offset(row, column)]; }
@@ -36,10 +39,12 @@ class Panorama {
     const int run = row * shape_.phases + column % shape_.phases;
     return static_cast<std::size_t>(run * 2 * shape_.headings + column / shape_.phases);
   }
-  void splat(float azimuth, float elevation, float range, float intensity, float half_rad);
-  void put(int row, int column, float range, float intensity);
+  void drawPoints(const MapPoints& points, std::size_t begin, std::size_t end,
+                  const Eigen::Vector3f& position);
+  void arrangeByHeading();
 
   PanoramaShape shape_;
+  std::vector<std::uint64_t> nearest_;    ///< [row][column]: bits of range, then of intensity
   std::vector<float> range_, intensity_;  ///< m (kUnknownRange: nothing); 0..255
 };
 

@@ -169,7 +169,7 @@ std::vector<PlaceCandidate> LoopWorker::searchAll(const PlaceQuestion& question,
   std::vector<PlaceCandidate> candidates;
   for (const MapPose& around : places) {
     const Searched& in = searched(question, around);
-    if (in.points.size() == 0) continue;
+    if (in.points.front().size() == 0) continue;
     const auto more = searchPlaces(in.points, query, around, in.up, {});
     std::copy_if(more.begin(), more.end(), std::back_inserter(candidates),
                  [&](const PlaceCandidate& c) { return question.admits(c.pose); });
@@ -188,10 +188,10 @@ const LoopWorker::Searched& LoopWorker::searched(const PlaceQuestion& question,
   const auto [found, is_new] = searched_.try_emplace(around.fragment);
   Searched& s = found->second;
   if (!is_new) return s;
-  s.points = thinnedPoints(*question.map, around.fragment);
+  s.points = pointPyramid(thinnedPoints(*question.map, around.fragment));
   const Eigen::Vector3d upright =
       meanUpright(posesIn(around.fragment, closer_.poses()), around.T_map_camera);
-  const auto levels = findLevels(orientedPoints(s.points), upright, kUpright_rad);
+  const auto levels = findLevels(orientedPoints(s.points.front()), upright, kUpright_rad);
   s.up = levels ? levels->up : upright;
   return s;
 }

@@ -73,9 +73,9 @@ void print(const char* kind, const PlaceVerdict& verdict, const Eigen::Isometry3
 class MapSampler {
  public:
   MapSampler(const SurfelMap& map, const Eigen::Isometry3d& last, std::mt19937& chance)
-      : map_(map), points_(thinnedPoints(map)), last_(last), chance_(chance) {
+      : map_(map), points_(pointPyramid(thinnedPoints(map))), last_(last), chance_(chance) {
     const auto levels =
-        findLevels(orientedPoints(points_), last.linear() * -Eigen::Vector3d::UnitY(), 0.9);
+        findLevels(orientedPoints(points_.front()), last.linear() * -Eigen::Vector3d::UnitY(), 0.9);
     if (levels) up_ = levels->up;
   }
 
@@ -114,7 +114,7 @@ class MapSampler {
   }
 
   const SurfelMap& map_;
-  MapPoints points_;
+  PointPyramid points_;
   Eigen::Isometry3d last_;
   std::mt19937& chance_;
   std::optional<Eigen::Vector3d> up_;

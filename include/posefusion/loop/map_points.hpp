@@ -25,6 +25,15 @@ struct MapPoints {
 /// support. The order depends on the map alone.
 MapPoints thinnedPoints(const SurfelMap& map, int fragment = kFirstFragment, double voxel_m = 0.06);
 
+/// Of each voxel of this side and facing the mean, its normal of unit length.
+MapPoints coarser(const MapPoints& points, double voxel_m);
+
+/// The same points at several densities, the densest first, each with voxels twice as large: what
+/// is far away needs fewer.
+using PointPyramid = std::vector<MapPoints>;
+
+PointPyramid pointPyramid(MapPoints densest);
+
 /// Points with unit normals, of which `count`.
 struct OrientedPoints {
   const float *x, *y, *z;

@@ -72,7 +72,7 @@ struct PlaceCandidate {
 /// is that of `around` and, where known, that of the query's own floor or of a surface that it may
 /// lie on. Best first, none within 0.2 m and 10 degrees of a better one. The bits do not depend on
 /// the number of threads.
-std::vector<PlaceCandidate> searchPlaces(const MapPoints& points, const PlaceQuery& query,
+std::vector<PlaceCandidate> searchPlaces(const PointPyramid& points, const PlaceQuery& query,
                                          const MapPose& around, const Eigen::Vector3d& up,
                                          const PlaceSearchConfig& config);
 

@@ -99,7 +99,7 @@ class LoopWorker {
  private:
   /// A fragment of the map that was last searched in.
   struct Searched {
-    MapPoints points;
+    PointPyramid points;
     Eigen::Vector3d up = Eigen::Vector3d::Zero();
   };
 
