@@ -177,6 +177,19 @@ TEST_F(NearPersonTest, NorWhereTheMaskMissesItAndItsRimIsSeen) {
   EXPECT_LT(error(motion).norm(), 0.02);
 }
 
+TEST_F(NearPersonTest, NorBeforeAMappedWallWithoutARim) {
+  // From the person's edge on what is beside is the wall: only the map tells that it is not far.
+  ModelView view;
+  view.camera = camera_;
+  view.depth_m = depthFrom(Eigen::Isometry3d::Identity());
+  view.stable = cv::Mat(view.depth_m.size(), CV_8UC1, cv::Scalar(1));
+  const SparseMotion motion = SparseMotionTest::estimate(&view);
+  ASSERT_TRUE(motion.found);
+  EXPECT_LE(motion.matches, 20);
+  EXPECT_LT(error(motion).norm(), 0.02);
+  EXPECT_GT(error(SparseMotionTest::estimate()).norm(), 0.02) << "else this tests nothing";
+}
+
 /// A part of the picture without depth that has most corners: a shiny panel on the wall, or a
 /// window through which something infinitely far is seen. The camera goes fast.
 class HoleTest : public SparseMotionTest, public testing::WithParamInterface<bool> {

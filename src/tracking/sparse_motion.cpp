@@ -28,17 +28,21 @@ constexpr double kHeldShare = 0.5;
 constexpr double kSharedTranslation_m = 0.003;
 constexpr double kSharedRotation_rad = 0.0012;
 
-/// Does something stand at depth z (m) well before a stable surface of the map?
-bool isBeforeMap(const FlowScene& scene, const PinholeCamera& camera, const cv::Point2f& pixel,
-                 double z) {
-  if (scene.view == nullptr) return false;
+/// How far the map's stable surface is that the earlier camera would see at a pixel (m); 0: none.
+float mappedAt(const FlowScene& scene, const PinholeCamera& camera, const cv::Point2f& pixel) {
+  if (scene.view == nullptr) return 0.0F;
   const ModelView& view = *scene.view;
   const int u = static_cast<int>(pixel.x) * view.camera.width / camera.width;
   const int v = static_cast<int>(pixel.y) * view.camera.height / camera.height;
-  if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) return false;
-  const float known = view.depth_m.at<float>(v, u);
-  const bool stable = known > 0 && (view.stable.empty() || view.stable.at<std::uint8_t>(v, u) != 0);
-  return stable && known - static_cast<float>(z) > 2.0F * scene.sensor.tolerance(known, 5.0F);
+  if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) return 0.0F;
+  const bool stable = view.stable.empty() || view.stable.at<std::uint8_t>(v, u) != 0;
+  return stable ? view.depth_m.at<float>(v, u) : 0.0F;
+}
+
+/// Does something stand well before the map at a corner? What has no depth (z = 0) where the map
+/// was measured time and again is too near for the sensor.
+bool isBeforeMap(const DepthSensor& sensor, float mapped_m, double z) {
+  return mapped_m > 0 && mapped_m - static_cast<float>(z) > 2.0F * sensor.tolerance(mapped_m, 5.0F);
 }
 
 /// `landmarks` may be null: then all places come from the earlier frame's depth.
@@ -55,7 +59,10 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
     const CornerDepth around =
         scene.before_m.empty() ? CornerDepth{} : depthAround(scene.before_m, scene.sensor, a);
     const double z = around.z_m;
-    if (z > 0 && isBeforeMap(scene, camera, a, z)) continue;
+    // A landmark without depth has its place all the same.
+    if ((known == nullptr || z > 0) && isBeforeMap(scene.sensor, mappedAt(scene, camera, a), z)) {
+      continue;
+    }
     Sight sight{camera.unproject(a.x, a.y, z), {b.x, b.y}};
     if (known != nullptr) sight.before = T_before_map * known->at;
     if (known == nullptr && z <= 0) {
