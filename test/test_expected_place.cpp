@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "graph_scene.hpp"
 #include "posefusion/graph/drift.hpp"
 
@@ -63,6 +65,34 @@ TEST(ExpectedPlace, AllowsForTheDriftOfTheMapInBetween) {
       << "60 steps ago";
   const ExpectedPlace soon(graph, reckoned(1, beside, 0.02));
   EXPECT_FALSE(soon.admits({kFirstFragment, poseOf(graph, 0)})) << "a step ago";
+}
+
+TEST(ExpectedPlace, APlaceIsLeftOutOnlyWhereNothingNearItIsAdmitted) {
+  Poses truth = corridor();
+  PoseGraph graph = graphOf(truth);
+  graph.addLoop(loopOf(truth, 20, 57));  // ways of different lengths lie side by side
+  const ExpectedPlace expected(graph, reckoned(40, motion(0.3, 0.1, 0.2, 0.4), 0.3));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> along(-1.0, 1.0);
+  int left_out = 0, admitted = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Isometry3d around = poseOf(graph, 40) * motion(5 * along(random), along(random),
+                                                                5 * along(random), along(random));
+    const double reach_m = 0.2 + std::abs(along(random));
+    const bool admits_near = expected.admitsNear({kFirstFragment, around}, reach_m);
+    left_out += admits_near ? 0 : 1;
+    for (int k = 0; k < 200; ++k) {
+      Eigen::Isometry3d near = around * motion(0, 0, 0, 0.5 * along(random), 0.1 * along(random));
+      const Eigen::Vector3d way(along(random), along(random), along(random));
+      near.translation() += reach_m * way.normalized() * std::abs(along(random));
+      if (!expected.admits({kFirstFragment, near})) continue;
+      ++admitted;
+      ASSERT_TRUE(admits_near) << i;
+    }
+  }
+  EXPECT_GT(left_out, 50);
+  EXPECT_GT(admitted, 50);
+  EXPECT_TRUE(expected.admitsNear({7, motion(90, 0, 0, 0)}, 0.5)) << "nothing is known of it";
 }
 
 TEST(ExpectedPlace, IsTheSameFromAnywhereTheMapLies) {

@@ -2,7 +2,9 @@
 #include "posefusion/graph/expected_place.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "posefusion/graph/drift.hpp"
 
@@ -31,16 +33,38 @@ ExpectedPlace::ExpectedPlace(const PoseGraph& graph, const PoseConstraint& recko
 double ExpectedPlace::chiSquare(const MapPose& found) const {
   if (found.fragment != expected_.fragment || around_.empty()) return 0;
   const Eigen::Isometry3d &T_found = found.T_map_camera, &T_expected = expected_.T_map_camera;
-  const auto far = [&](const Around& a) {
-    return (a.position_m - T_found.translation()).squaredNorm();
-  };
-  const Around& near =
-      *std::min_element(around_.begin(), around_.end(),
-                        [&](const Around& a, const Around& b) { return far(a) < far(b); });
-  const double reach_m = (T_found.translation() - T_expected.translation()).norm();
-  const Matrix6d covariance = covariance_ + driftCovariance(config_, near.steps, reach_m);
+  const double off_m = (T_found.translation() - T_expected.translation()).norm();
+  const int steps = mostStepsNear(T_found.translation(), 0.0);
+  const Matrix6d covariance = covariance_ + driftCovariance(config_, steps, off_m);
   const Vector6d error = logSe3(T_expected.inverse() * T_found);
   return error.dot(covariance.llt().solve(error));
+}
+
+bool ExpectedPlace::admitsNear(const MapPose& place, double reach_m) const {
+  if (place.fragment != expected_.fragment || around_.empty()) return true;
+  const Eigen::Vector3d position_m = place.T_map_camera.translation();
+  const double off_m = (position_m - expected_.T_map_camera.translation()).norm();
+  const int steps = mostStepsNear(position_m, reach_m);
+  const Matrix6d covariance = covariance_ + driftCovariance(config_, steps, off_m + reach_m);
+  // The shift of a twist is no shorter than that of its motion, and what is known of the rotation
+  // only adds to the distance.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shift(covariance.topLeftCorner<3, 3>(),
+                                                             Eigen::EigenvaluesOnly);
+  return off_m - reach_m <= std::sqrt(kMostChiSquare * shift.eigenvalues().maxCoeff());
+}
+
+int ExpectedPlace::mostStepsNear(const Eigen::Vector3d& position_m, double reach_m) const {
+  const auto far = [&](const Around& a) { return (a.position_m - position_m).norm(); };
+  const Around& nearest =
+      *std::min_element(around_.begin(), around_.end(),
+                        [&](const Around& a, const Around& b) { return far(a) < far(b); });
+  if (reach_m <= 0) return nearest.steps;
+  const double most_m = far(nearest) + 2 * reach_m;
+  int steps = 0;
+  for (const Around& a : around_) {
+    if (far(a) <= most_m) steps = std::max(steps, a.steps);
+  }
+  return steps;
 }
 
 }  // namespace pf

@@ -168,6 +168,7 @@ std::vector<PlaceCandidate> LoopWorker::searchAll(const PlaceQuestion& question,
   const PlaceQuery query = placeQuery(question.frame);
   std::vector<PlaceCandidate> candidates;
   for (const MapPose& around : places) {
+    if (!question.admitsNear(around)) continue;
     const Searched& in = searched(question, around);
     if (in.points.front().size() == 0) continue;
     const auto more = searchPlaces(in.points, query, around, in.up, {});

@@ -124,8 +124,12 @@ void Mapper::State::askForPlace() {
     const auto reckoned = back_end.reckonedFrom(*pose);
     if (reckoned) place.expected = std::make_shared<ExpectedPlace>(back_end.graph(), *reckoned);
   }
-  for (std::size_t i = 0; i < std::min(kRoomsAtOnce, rooms.size()); ++i) {
-    place.elsewhere.push_back(rooms[next_room++ % rooms.size()]);
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < rooms.size() && chosen < kRoomsAtOnce; ++i) {
+    const MapPose& room = rooms[next_room++ % rooms.size()];
+    if (!place.admitsNear(room)) continue;
+    place.elsewhere.push_back(room);
+    ++chosen;
   }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();

@@ -29,6 +29,10 @@ class ExpectedPlace {
   /// one would stay.
   bool admits(const MapPose& found) const { return chiSquare(found) <= kMostChiSquare; }
 
+  /// Whether a pose within `reach_m` of this one, turned as it may be, can be admitted: false only
+  /// where none can.
+  bool admitsNear(const MapPose& place, double reach_m) const;
+
   static constexpr double kMostChiSquare = 12.59;  ///< 95 % of 6 degrees of freedom
 
  private:
@@ -37,6 +41,10 @@ class ExpectedPlace {
     Eigen::Vector3d position_m;
     int steps = 0;  ///< from the keyframe of the beginning
   };
+
+  /// From the keyframe of the beginning to those that may be the nearest to a position within
+  /// reach of this one, the most.
+  int mostStepsNear(const Eigen::Vector3d& position_m, double reach_m) const;
 
   GraphConfig config_;
   std::vector<Around> around_;  ///< those in use

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
@@ -44,6 +45,12 @@ struct PlaceSearchConfig {
   std::vector<double> heights_m = {-0.12, 0.0, 0.12};  ///< above that of the last pose
   double max_range_m = 0;  ///< farther points are not looked at; 0: by the range of the sensor
   int most = 50;           ///< candidates
+
+  /// Of a pose found, from that which is searched around: a camera that fell lies lower.
+  double farthest_m() const {
+    constexpr double kFall_m = 1.5;
+    return std::hypot(std::sqrt(2.0) * reach_m, kFall_m);
+  }
 };
 
 /// The search 3 m each way, for a map that has just been loaded.

@@ -15,6 +15,7 @@
 #include "posefusion/graph/expected_place.hpp"
 #include "posefusion/loop/closer.hpp"
 #include "posefusion/loop/map_points.hpp"
+#include "posefusion/loop/place_search.hpp"
 
 namespace pf {
 
@@ -29,6 +30,10 @@ struct PlaceQuestion {
   std::shared_ptr<const ExpectedPlace> expected{};
 
   bool admits(const MapPose& place) const { return !expected || expected->admits(place); }
+  /// Whether anything that a search around it finds can be admitted.
+  bool admitsNear(const MapPose& around) const {
+    return !expected || expected->admitsNear(around, PlaceSearchConfig{}.farthest_m());
+  }
 };
 
 /// What mapping asks of the loop closer. Immutable once asked: it is worked on in another thread.
