@@ -3,74 +3,21 @@
 #include "posefusion/io/saved_map_file.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <thread>
 
 #include "first_map_version.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
-#include "posefusion/slam/loop_thread.hpp"
-#include "simulated_sequence.hpp"
+#include "saved_map_scene.hpp"
 #include "temporary_folder.hpp"
 
 namespace pf {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kMapped = 40, kElsewhere = 75, kFrames = 120;
-
-Config config() {
-  Config c;
-  c.frame.shrink = 1;                  // the images are small already
-  c.graph.keyframe_distance_m = 0.05;  // so that there are some
-  return c;
-}
-
-const SimulatedSequence& room() { return exactBox<kFrames>(); }
-
-bool equal(const std::vector<FragmentSurfels>& a, const std::vector<FragmentSurfels>& b) {
-  bool same = a.size() == b.size();
-  for (std::size_t i = 0; i < a.size() && same; ++i) {
-    same = a[i].fragment == b[i].fragment;
-    SurfelArrays own = a[i].surfels;
-    own.forEachArray(b[i].surfels, [&](const auto& x, const auto& y) { same = same && x == y; });
-  }
-  return same;
-}
-
-/// A mapper with its loop closer.
-struct Session {
-  Mapper mapper{config()};
-  LoopThread closer{config(), AnswerTime::after_lag};
-
-  FrameStatus process(int index) {
-    const FrameStatus status = mapper.process({room().frame(index).frame, {}, {}});
-    closer.serve(mapper);
-    return status;
-  }
-  /// Runs frames and returns how many poses are right (2 cm); a pose that is wrong fails.
-  int follow(int begin, int end) {
-    int right = 0;
-    for (int i = begin; i < end; ++i) {
-      const FrameStatus status = process(i);
-      if (!status.located) continue;
-      const double error =
-          (status.T_map_camera.translation() - room().pose(i).translation()).norm();
-      EXPECT_LT(error, 0.02) << "frame " << i;
-      ++right;
-    }
-    closer.finish(mapper);
-    return right;
-  }
-  void save(const std::string& path, MapWriter::Mode mode = MapWriter::Mode::create) {
-    MapRecording recording(path, mode, toYaml(config()), mapper);
-    EXPECT_EQ(recording.update(room().frame(0).frame.camera, mapper), "");
-    EXPECT_TRUE(recording.finish(mapper));
-  }
-};
+using namespace saved_map_scene;
 
 class SavedMapFile : public testing::Test {
  protected:
@@ -229,55 +176,6 @@ TEST_F(SavedMapFile, AFrameOfAnotherRoomIsNotFound) {
     session.closer.serve(session.mapper);
   }
   EXPECT_EQ(session.mapper.map().size(), surfels);
-}
-
-TEST_F(SavedMapFile, AFullDiskIsMadeUpForByTheNextWrite) {
-  Session session;
-  const std::string path = own / "map.pfdb";
-  {
-    MapRecording recording(path, MapWriter::Mode::create, "", session.mapper);
-    EXPECT_FALSE(recording.finish(session.mapper)) << "there is no map yet";
-    const PinholeCamera camera = room().frame(0).frame.camera;
-    for (int i = 0; i < kMapped / 2; ++i) {
-      session.process(i);
-      EXPECT_EQ(recording.update(camera, session.mapper), "");
-    }
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    signal(SIGXFSZ, SIG_IGN);
-    rlimit full = before;
-    full.rlim_cur = 100'000;
-    setrlimit(RLIMIT_FSIZE, &full);
-    std::string error;
-    for (int i = 0; i < 200 && error.empty(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      error = recording.update(camera, session.mapper);
-    }
-    setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_NE(error.find(path + ": cannot be read or written"), std::string::npos) << error;
-    session.follow(kMapped / 2, kMapped);
-    session.closer.finish(session.mapper);
-    EXPECT_TRUE(recording.finish(session.mapper));
-  }
-  const SavedMap saved = readSavedMap(path);
-  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().parts()));
-  EXPECT_EQ(saved.frames.size(), static_cast<std::size_t>(kMapped));
-}
-
-TEST_F(SavedMapFile, ARecordingGoesOnAfterItWasFinished) {
-  Session session;
-  const std::string path = own / "map.pfdb";
-  {
-    MapRecording recording(path, MapWriter::Mode::create, "", session.mapper);
-    for (const int end : {5, 10}) {
-      session.follow(end - 5, end);
-      recording.update(room().frame(0).frame.camera, session.mapper);
-      EXPECT_TRUE(recording.finish(session.mapper));
-    }
-  }
-  const SavedMap saved = readSavedMap(path);
-  EXPECT_EQ(saved.frames.size(), 10U);
-  EXPECT_TRUE(equal(saved.surfels, session.mapper.map().parts()));
 }
 
 TEST_F(SavedMapFile, WhatCannotBeUsedIsRefusedByItsName) {

@@ -10,16 +10,9 @@
 namespace pf {
 namespace {
 
-// Two layers of one surface, which drift has laid side by side, are parallel and at most this far
-// apart: what is farther is a surface of its own.
-constexpr float kLayer_m = 0.10F;
-constexpr float kLayerTolerances = 3.0F;
-constexpr float kParallelCosine = 0.9F;
 // A far measurement is near enough to both layers, and would keep both. What was made so much
 // earlier was made in another pass; within one, surfels as far apart are an edge.
 constexpr double kAnotherPass_s = 10.0 / 3.0;
-// Few stable surfels are doubled: those of a block are looked at once in so many frames.
-constexpr int kTurns = 4;
 // A person found now may have been in view, and mapped, for this long; such surfels must be removed
 // before they are older.
 constexpr double kUnnoticed_s = 1.5;
@@ -128,7 +121,7 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
   if (m.depth <= 0) return false;
   const float off = std::abs(m.depth - p.z);
   if (p.z - m.depth > kWellBefore_m && map_.isStable(s, i)) evidence_.known_behind.mark(p.u, p.v);
-  if (off > std::max(tolerance, kLayer_m)) return false;
+  if (off > std::max(tolerance, kMostLayer_m)) return false;
   Eigen::Vector3f own;
   to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], own.x(), own.y(), own.z());
   const float cosine = m.n.dot(own);
@@ -171,42 +164,6 @@ void SurfelUpdate::doubt(SurfelArrays& s, const Place& p) const {
   const bool is_young = s.created[p.surfel] > map_.frame() - unnoticed_;
   if (is_young && evidence_.near_people.has(p.u, p.v, p.z))
     contradictOne(s, p.surfel, kUnnoticedFrames);
-}
-
-bool SurfelUpdate::isLayer(const Place& p, float measured, float cosine) const {
-  return p.facing < 0 && cosine > kParallelCosine &&
-         std::abs(measured - p.z) <= kLayerTolerances * agreement(p.z);
-}
-
-SurfelUpdate::Supported SurfelUpdate::supportedAt(const SurfelArrays& s, const Place& p) const {
-  const float cosine = p.facing / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-  return {p.surfel, static_cast<std::uint32_t>(p.level->at(p.level_u, p.level_v)), p.z,
-          std::abs(cosine), std::max(s.radius[p.surfel], p.z / p.level->fx)};
-}
-
-void SurfelUpdate::contradict(const Result& result, SurfelArrays& s) const {
-  for (const Layer& layer : result.layers) {
-    const std::int64_t explanation = evidence_.explained[layer.pixel];
-    if (Explanation::made(explanation) < s.created[layer.surfel]) contradictOne(s, layer.surfel);
-  }
-  for (const Supported& seen : result.supported) {
-    const std::size_t i = seen.surfel;
-    const bool stable = map_.isStable(s, i);
-    if (stable && !options_.may_remove_stable) continue;
-    if (!isDoubled(seen, s.created[i] - (stable ? another_pass_ : 1))) continue;
-    // Its support is taken back, and as much of that before.
-    contradictOne(s, i, 2.0F * static_cast<float>(stable ? kTurns : 1));
-  }
-}
-
-/// Whether a stable surfel made in frame `before` or earlier agrees with the same measurement, and
-/// is so far from this one along its normal that the two are no one surface.
-bool SurfelUpdate::isDoubled(const Supported& seen, std::int32_t before) const {
-  const std::int64_t older = evidence_.explained[seen.pixel];
-  if (Explanation::made(older) > before) return false;
-  const float sine = std::sqrt(std::max(0.0F, 1.0F - seen.cosine * seen.cosine));
-  const float apart = std::abs(Explanation::depth(older) - seen.z) * seen.cosine;
-  return apart > kLeastLayer_m + seen.beside_m * sine;
 }
 
 void SurfelUpdate::contradictOne(SurfelArrays& s, std::size_t i, float frames) const {

@@ -73,6 +73,8 @@ class SurfelUpdate {
     int level_u, level_v;                 ///< pixel of it
   };
   static constexpr std::size_t kBatch = 64;
+  /// Few stable surfels are doubled: those of a block are looked at once in so many frames.
+  static constexpr int kTurns = 4;
   using Places = std::array<Place, kBatch>;
   /// What the frame measures there.
   struct Measurement {

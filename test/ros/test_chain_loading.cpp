@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maps of before, and what becomes of them: services and parameters of fusion.
 #include <gtest/gtest.h>
-#include <posefusion/LoadMap.h>
-#include <posefusion/SetMode.h>
 
 #include <filesystem>
-#include <optional>
 
-#include "../temporary_folder.hpp"
-#include "chain_fixture.hpp"
+#include "loading_fixture.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
@@ -18,64 +14,6 @@ namespace posefusion_ros {
 namespace {
 
 namespace fs = std::filesystem;
-using posefusion::LoadMap;
-using posefusion::SetMode;
-
-/// A chain, and a map of the empty room that it may begin in.
-class ChainLoading : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    made_ = new pf::TemporaryFolder;
-    pf::Config config;
-    config.frame.shrink = 1;
-    pf::Mapper mapper(config);
-    for (int i = 0; i < 20; ++i) mapper.process({emptyRoom().frame(i).frame, {}, {}});
-    pf::MapRecording recording(*made_ / "map.pfdb", pf::MapWriter::Mode::create, "", mapper);
-    recording.update(emptyRoom().frame(0).frame.camera, mapper);
-    recording.finish(mapper);
-  }
-  static void TearDownTestSuite() { delete made_; }
-
-  void SetUp() override {
-    fs::copy(*made_ / "map.pfdb", folder / "map.pfdb");
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    chain.emplace(std::string("loading_") + test->name());
-    chain->set("frame/shrink", 1);
-    chain->set("output", folder / "out");
-  }
-
-  std::string map() const { return folder / "map.pfdb"; }
-
-  pf::RgbdFrame frame(int index) const {
-    pf::RgbdFrame frame = emptyRoom().frame(index % 40).frame;
-    frame.stamp_ns = 1'000'000'000LL + index * 33'333'333LL + later_ns;
-    return frame;
-  }
-  TrackingStatusMsg process(int index) { return chain->process(toMessages(frame(index))); }
-
-  /// Shows frames until the camera is found; the next one to show, or -1.
-  int find(int index) {
-    for (int end = index + 39; index < end; ++index) {
-      if (process(index).state == TrackingStatusMsg::TRACKING) return index + 1;
-    }
-    return -1;
-  }
-
-  LoadMap::Response loadMap(const std::string& file) {
-    return chain->call<LoadMap>("load_map", &LoadMap::Request::file, file);
-  }
-  SetMode::Response setMode(const std::string& mode) {
-    return chain->call<SetMode>("set_mode", &SetMode::Request::mode, mode);
-  }
-
-  const pf::TemporaryFolder folder;
-  std::optional<Chain> chain;
-  std::int64_t later_ns = 0;
-
- private:
-  static pf::TemporaryFolder* made_;
-};
-pf::TemporaryFolder* ChainLoading::made_ = nullptr;
 
 TEST_F(ChainLoading, AMapIsLoadedAndWhatItReplacesIsSaved) {
   ASSERT_TRUE(chain->load());
@@ -243,58 +181,6 @@ TEST_F(ChainLoading, AMapOfAnotherCameraIsNamedInEachStatus) {
   EXPECT_EQ(outcome(status), TrackingStatusMsg::BAD_INPUT);
   EXPECT_NE(status.reason.find(map() + ": is a map of another camera"), std::string::npos)
       << status.reason;
-}
-
-TEST_F(ChainLoading, ParametersThatContradictLeaveTheNodeletIdle) {
-  chain->set("localize_only", true);
-  ASSERT_TRUE(chain->load({"fusion"}));
-  EXPECT_FALSE(ros::service::exists(chain->space() + "/fusion/save_map", false));
-  chain->unload();
-  chain->set("map_file", folder / "none.pfdb");
-  ASSERT_TRUE(chain->load({"fusion"}));
-  EXPECT_FALSE(ros::service::exists(chain->space() + "/fusion/save_map", false));
-}
-
-TEST_F(ChainLoading, TheModeMayChangeAtAnyTime) {
-  ASSERT_TRUE(chain->load());
-  const auto early = setMode("localisation");
-  EXPECT_FALSE(early.success);
-  EXPECT_NE(early.message.find("nothing was mapped"), std::string::npos) << early.message;
-  EXPECT_NE(setMode("fast").message.find(
-                "mode 'fast', expected mapping or localisation (localization, localize_only)"),
-            std::string::npos);
-  process(0);
-  const std::string names[] = {"localisation", "localization", "localize_only"};
-  for (int round = 0; round < 3; ++round) {
-    ASSERT_TRUE(setMode(names[round]).success);
-    const auto surfels = chain->statuses().back().surfels;
-    for (int i = 1; i < 6; ++i) {
-      const auto status = process(10 * round + i);
-      EXPECT_EQ(status.state, TrackingStatusMsg::TRACKING);
-      EXPECT_EQ(status.surfels, surfels);
-    }
-    ASSERT_TRUE(setMode("mapping").success);
-    for (int i = 6; i < 11; ++i) process(10 * round + i);
-    EXPECT_NE(chain->statuses().back().surfels, surfels);
-  }
-  ASSERT_TRUE(setMode("localisation").success);
-  ASSERT_TRUE(chain->call("reset").success);
-  EXPECT_GT(process(31).surfels, 0U) << "an empty map is to be filled";
-}
-
-TEST_F(ChainLoading, WhilePausedFramesAreReportedAndNotLookedAt) {
-  ASSERT_TRUE(chain->load());
-  EXPECT_EQ(outcome(process(0)), TrackingStatusMsg::FUSED);
-  const auto surfels = chain->statuses().back().surfels;
-  ASSERT_TRUE(chain->call("pause").success);
-  for (int i = 1; i < 4; ++i) {
-    const auto status = process(i);
-    EXPECT_EQ(outcome(status), TrackingStatusMsg::PAUSED);
-    EXPECT_EQ(status.surfels, surfels);
-    EXPECT_EQ(status.located, 0);
-  }
-  ASSERT_TRUE(chain->call("resume").success);
-  EXPECT_EQ(outcome(process(4)), TrackingStatusMsg::FUSED);
 }
 
 }  // namespace
