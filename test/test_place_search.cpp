@@ -87,6 +87,19 @@ TEST(PlaceSearch, WhatIsOutOfReachChangesNothing) {
   }
 }
 
+TEST(PlaceSearch, APointWhereItLooksFromIsNotSeen) {
+  MapPoints points = room().points.front();
+  const Eigen::Isometry3d truth = room().sequence.pose(11);
+  const Eigen::Vector3f at = truth.translation().cast<float>(), up = room().up.cast<float>();
+  points.x.push_back(at.x()), points.y.push_back(at.y()), points.z.push_back(at.z());
+  points.nx.push_back(up.x()), points.ny.push_back(up.y()), points.nz.push_back(up.z());
+  points.intensity.push_back(255.0F);
+  const auto found =
+      searchPlaces(pointPyramid(points), placeQuery(room().frame(11)), {0, truth}, room().up, {});
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(metresOff(found[0].pose.T_map_camera, truth), 0.25);
+}
+
 TEST(PlaceSearch, TheOrderOfThePointsChangesNothing) {
   MapPoints turned = room().points.front();
   for (auto* array :

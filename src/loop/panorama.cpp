@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kPi = 3.14159265F;
 // Nearer points would fill the picture; the camera sees nothing there either.
-constexpr float kMinRange_m = 0.2F;
+constexpr float kNearest_m = 0.2F;
 constexpr std::size_t kChunk = 256;
 // Columns are narrower away from the horizon, but not drawn wider than this.
 constexpr float kWidest = 5.0F;
@@ -55,14 +55,14 @@ void findBins(const Run& run, std::size_t count, Bins& __restrict bins) {
     const float range = std::sqrt(x * x + y * y + z * z);
     const float row = (arcTangent(z, flat) - run.lowest_rad) * run.bins_per_rad;
     const float column = (arcTangent(y, x) + kPi) * run.bins_per_rad;
-    const float half = run.half_m * run.bins_per_rad / range;
+    const float half = run.half_m * run.bins_per_rad / std::max(range, kNearest_m);
     const float wide = half * std::min(kWidest, range / (flat + 1e-6F));
     // Negative where the point faces the position.
     const float away = x * run.nx[i] + y * run.ny[i] + z * run.nz[i];
     bins.first_row[i] = std::max(0, floorOf(row - half));
     const int last_row = std::min(run.rows - 1, floorOf(row + half));
     bins.last_row[i] =
-        (away < 0) & (range >= kMinRange_m) & (range <= run.max_range_m) ? last_row : -1;
+        (away < 0) & (range >= kNearest_m) & (range <= run.max_range_m) ? last_row : -1;
     bins.first_column[i] = floorOf(column - wide);
     bins.last_column[i] = floorOf(column + wide);
     bins.range[i] = range;
