@@ -5,7 +5,7 @@
 
 #include "posefusion/core/rigid_motion.hpp"
 #include "posefusion/core/se3.hpp"
-#include "posefusion/core/static_odds.hpp"
+#include "posefusion/loop/own_view.hpp"
 
 namespace pf {
 namespace {
@@ -39,16 +39,7 @@ void KeyframePicture::assign(const KeyframeView& view, const DepthSensor& sensor
   config.min_depth_m = sensor.min_depth_m;
   config.max_depth_m = sensor.max_depth_m;
   frame.assign(whole, cv::Mat(), config, sensor);
-  const FrameLevel& level = frame.levels[0];
-  model.camera = level.camera;
-  level.depth_m.copyTo(model.depth_m);
-  model.depth_m.setTo(0, level.normal_z >= 0);
-  model.normal_x = level.normal_x;
-  model.normal_y = level.normal_y;
-  model.normal_z = level.normal_z;
-  model.intensity = level.intensity;
-  model.odds.create(level.depth_m.size(), CV_32FC1);
-  model.odds.setTo(static_odds::kMost);  // all of a keyframe counts as static
+  ownView(frame.levels[0], model);
   points.assign(model, sensor);
 }
 

@@ -6,6 +6,7 @@
 
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/loop/dense_pairs.hpp"
+#include "posefusion/loop/own_view.hpp"
 
 namespace pf {
 namespace {
@@ -139,6 +140,7 @@ LoopAnswer LoopWorker::answer(const LoopQuestion& question) {
 }
 
 std::optional<PlaceVerdict> LoopWorker::findPlace(const PlaceQuestion& question) {
+  if (!canBePlaced(question.frame, tracking_)) return std::nullopt;
   // Features are the fastest where they find the place; drawing the map finds the rest.
   std::vector<PlaceCandidate> like;
   for (const MapPose& pose : closer_.placesLike(keyframeView(question.frame, 0, {}, true))) {
