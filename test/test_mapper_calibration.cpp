@@ -43,7 +43,7 @@ class MapperCalibrationTest : public MapperTest {
     const TrueFrame truth = room().frame(3);
     const cv::Mat of_a = a.render(truth.frame.camera, truth.T_map_camera).depth_m;
     const cv::Mat of_b = b.render(truth.frame.camera, truth.T_map_camera).depth_m;
-    const cv::Mat both = of_a > 0 & of_b > 0;
+    const cv::Mat both = (of_a > 0) & (of_b > 0);
     cv::Mat difference;
     cv::absdiff(of_a, of_b, difference);
     EXPECT_GT(cv::countNonZero(both), both.total() / 2);
@@ -77,7 +77,7 @@ TEST_F(MapperCalibrationTest, TheViewForTheSegmenterIsAsTheCameraMeasures) {
   const cv::Mat wanted = DepthCorrector(test::roomField().inverse()).inMetres(drawn, 1.0);
   cv::Mat difference;
   cv::absdiff(view.depth_m, wanted, difference);
-  const cv::Mat both = view.depth_m > 0 & wanted > 0;
+  const cv::Mat both = (view.depth_m > 0) & (wanted > 0);
   EXPECT_GT(cv::countNonZero(both), 0.8 * static_cast<double>(both.total()));
   EXPECT_LT(cv::mean(difference, both)[0], 1e-4);
   EXPECT_GT(cv::norm(drawn, wanted, cv::NORM_INF), 0.02);

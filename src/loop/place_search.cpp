@@ -136,7 +136,8 @@ std::vector<PlaceCandidate> searchPlaces(const PointPyramid& points, const Place
   const Comparison coarse = comparisonOf(query, grid, max_range_m, kCoarse);
   const Comparison fine = comparisonOf(query, grid, max_range_m, 1);
   if (fine.shape.rows == 0) return {};
-  const PointCubes near(points, grid.T_map_grid.inverse(), max_range_m + std::sqrt(2.0) * config.reach_m);
+  const PointCubes near(points, grid.T_map_grid.inverse(),
+                        max_range_m + std::sqrt(2.0) * config.reach_m);
   addLayers(query, near.points().front(), config, grid);
   std::vector<PlaceCandidate> all(grid.poses());
   std::vector<std::size_t> positions(grid.positions());
