@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Map files that are no maps, are damaged, or whose writer had an accident.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 
 #include "example_map.hpp"
 #include "first_map_version.hpp"
+#include "full_disk.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/map_database.hpp"
@@ -167,17 +167,13 @@ TEST(MapDatabase, AFullDiskLosesOnlyWhatDidNotFit) {
   {
     MapWriter writer(path, MapWriter::Mode::create);
     writer.write(example.update);
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    signal(SIGXFSZ, SIG_IGN);
-    rlimit full = before;
-    full.rlim_cur = 1'000'000;
-    setrlimit(RLIMIT_FSIZE, &full);
     MapUpdate large = example.update;
     large.blobs["large"] = std::string(3'000'000, 'x');
     large.frame = 12;
-    const std::string error = errorOf([&] { writer.write(large); });
-    setrlimit(RLIMIT_FSIZE, &before);
+    const std::string error = errorOf([&] {
+      const FullDisk full(1'000'000);
+      writer.write(large);
+    });
     EXPECT_NE(error.find(path + ": cannot be read or written"), std::string::npos) << error;
     example.update.frames.clear();
     example.update.frame = 11;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A map file that is written while the map grows.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <chrono>
-#include <csignal>
 #include <thread>
 
+#include "full_disk.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 #include "saved_map_scene.hpp"
 #include "temporary_folder.hpp"
@@ -28,18 +27,14 @@ TEST(MapRecording, AFullDiskIsMadeUpForByTheNextWrite) {
       session.process(i);
       EXPECT_EQ(recording.update(camera, session.mapper), "");
     }
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    signal(SIGXFSZ, SIG_IGN);
-    rlimit full = before;
-    full.rlim_cur = 100'000;
-    setrlimit(RLIMIT_FSIZE, &full);
     std::string error;
-    for (int i = 0; i < 200 && error.empty(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      error = recording.update(camera, session.mapper);
+    {
+      const FullDisk full(100'000);
+      for (int i = 0; i < 200 && error.empty(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        error = recording.update(camera, session.mapper);
+      }
     }
-    setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_NE(error.find(path + ": cannot be read or written"), std::string::npos) << error;
     session.follow(kMapped / 2, kMapped);
     session.closer.finish(session.mapper);

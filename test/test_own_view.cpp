@@ -18,9 +18,9 @@ WorkingFrame wall(double contrast) {
   frame.depth = cv::Mat(frame.depth.size(), CV_16UC1, cv::Scalar(600));
   cv::Mat squares(frame.color.rows / 8, frame.color.cols / 8, CV_8UC1);
   cv::Mat noise(frame.color.size(), CV_16SC3);
-  cv::theRNG().state = 7;
-  cv::randn(squares, 128, contrast);
-  cv::randn(noise, 0, 1.5);
+  cv::RNG random(7);
+  random.fill(squares, cv::RNG::NORMAL, 128, contrast);
+  random.fill(noise, cv::RNG::NORMAL, 0, 1.5);
   cv::resize(squares, squares, frame.color.size(), 0, 0, cv::INTER_NEAREST);
   cv::cvtColor(squares, frame.color, cv::COLOR_GRAY2RGB);
   cv::add(frame.color, noise, frame.color, cv::noArray(), CV_8U);

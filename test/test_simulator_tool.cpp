@@ -4,7 +4,6 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/Imu.h>
-#include <sys/resource.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "full_disk.hpp"
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/trajectory_file.hpp"
@@ -179,14 +179,10 @@ TEST_F(SimulatorToolTest, ABagHasTheOtherSensorsAsAFolderHas) {
 }
 
 TEST_F(SimulatorToolTest, AFullDiskLeavesNoPartOfABag) {
-  const auto before = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit limit{};
-  getrlimit(RLIMIT_FSIZE, &limit);
-  const rlimit small{300'000, limit.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  const int code = run({scene(), "--output", own / "out.bag", "--duration", "20"});
-  setrlimit(RLIMIT_FSIZE, &limit);
-  std::signal(SIGXFSZ, before);
+  const int code = [&] {
+    const FullDisk full(300'000);
+    return run({scene(), "--output", own / "out.bag", "--duration", "20"});
+  }();
   EXPECT_EQ(code, 1) << said;
   EXPECT_TRUE(hasSaid("out.bag: cannot be written")) << said;
   EXPECT_EQ(files(), (std::vector<std::string>{"log.txt", "scene.yaml"}));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include <filesystem>
 #include <random>
 
+#include "full_disk.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
@@ -153,17 +153,12 @@ TEST(TrajectoryJournal, WhatAKilledProcessLeftIsKept) {
 TEST(TrajectoryJournal, AFullDiskLeavesWholeLines) {
   const TemporaryFolder folder;
   const std::string path = folder / "journal";
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{}, limit{};
-  getrlimit(RLIMIT_FSIZE, &before);
   TrajectoryJournal journal(path, "");
   EXPECT_TRUE(journal.add(poseAt(0)));
-  limit = before;
-  limit.rlim_cur = std::filesystem::file_size(path) + 10;  // as if the disk had no more room
-  setrlimit(RLIMIT_FSIZE, &limit);
-  EXPECT_FALSE(journal.add(poseAt(1)));
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  {
+    const FullDisk full(std::filesystem::file_size(path) + 10);
+    EXPECT_FALSE(journal.add(poseAt(1)));
+  }
   EXPECT_TRUE(journal.add(poseAt(2)));
   const Trajectory kept = loadTrajectory(path);
   ASSERT_EQ(kept.size(), 2U);

@@ -2,9 +2,10 @@
 #include "posefusion/loop/map_points.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_map>
+
+#include "point_arrays.hpp"
 
 namespace pf {
 namespace {
@@ -51,10 +52,7 @@ MapPoints thinnedPoints(const SurfelMap& map, int fragment, double voxel_m) {
         slots.try_emplace(cellOf(s, i, 1.0F / points.voxel_m), support.size());
     if (is_new) {
       support.push_back(-1.0F);
-      for (auto* array : {&points.x, &points.y, &points.z, &points.nx, &points.ny, &points.nz,
-                          &points.intensity}) {
-        array->push_back(0.0F);
-      }
+      for (auto* array : pointArrays(points)) array->push_back(0.0F);
     }
     if (s.weight[i] <= support[found->second]) return;
     support[found->second] = s.weight[i];
@@ -68,11 +66,8 @@ MapPoints coarser(const MapPoints& points, double voxel_m) {
   sums.voxel_m = static_cast<float>(voxel_m);
   std::unordered_map<std::uint64_t, std::size_t> slots;
   std::vector<float> count;
-  const auto arraysOf = [](auto& p) {
-    return std::array{&p.x, &p.y, &p.z, &p.nx, &p.ny, &p.nz, &p.intensity};
-  };
-  const auto from = arraysOf(points);
-  const auto to = arraysOf(sums);
+  const auto from = pointArrays(points);
+  const auto to = pointArrays(sums);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [found, is_new] =
         slots.try_emplace(cellOf(points, i, 1.0F / sums.voxel_m), count.size());

@@ -127,7 +127,6 @@ void Panorama::draw(const PointCubes& cubes, const Eigen::Vector3f& position,
 void Panorama::drawPoints(const MapPoints& points, std::size_t begin, std::size_t end,
                           const Eigen::Vector3f& position) {
   Bins bins;
-  const int columns = shape_.columns();
   for (; begin < end; begin += kChunk) {
     const std::size_t count = std::min(kChunk, end - begin);
     const Run run{&points.x[begin],
@@ -145,17 +144,23 @@ void Panorama::drawPoints(const MapPoints& points, std::size_t begin, std::size_
     findBins(run, count, bins);
     for (std::size_t i = 0; i < count; ++i) {
       if (bins.first_row[i] > bins.last_row[i]) continue;
-      const std::uint64_t point = packed(bins.range[i], points.intensity[begin + i]);
       const int first = bins.first_column[i];
-      const int last = std::min(bins.last_column[i], first + columns - 1);
+      const int last = std::min(bins.last_column[i], first + shape_.columns() - 1);
+      const std::uint64_t point = packed(bins.range[i], points.intensity[begin + i]);
       for (int row = bins.first_row[i]; row <= bins.last_row[i]; ++row) {
-        std::uint64_t* bin = &nearest_[static_cast<std::size_t>(row * columns)];
-        for (int c = first; c <= last; ++c) {
-          std::uint64_t& there = bin[c < 0 ? c + columns : c < columns ? c : c - columns];
-          there = std::min(there, point);
-        }
+        offer(point, row, first, last);
       }
     }
+  }
+}
+
+/// To bins of a row, which goes all around.
+void Panorama::offer(std::uint64_t point, int row, int first_column, int last_column) {
+  const int columns = shape_.columns();
+  std::uint64_t* bins = &nearest_[static_cast<std::size_t>(row * columns)];
+  for (int c = first_column; c <= last_column; ++c) {
+    std::uint64_t& there = bins[c < 0 ? c + columns : c < columns ? c : c - columns];
+    there = std::min(there, point);
   }
 }
 

@@ -41,6 +41,7 @@ class Panorama {
   }
   void drawPoints(const MapPoints& points, std::size_t begin, std::size_t end,
                   const Eigen::Vector3f& position);
+  void offer(std::uint64_t point, int row, int first_column, int last_column);
   void arrangeByHeading();
 
   PanoramaShape shape_;

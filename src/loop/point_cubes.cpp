@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "point_arrays.hpp"
+
 namespace pf {
 namespace {
 
@@ -50,9 +52,7 @@ MapPoints sorted(const MapPoints& points, const Eigen::Isometry3f& T, double rea
   for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
   MapPoints out;
   out.voxel_m = points.voxel_m;
-  for (auto* array : {&out.x, &out.y, &out.z, &out.nx, &out.ny, &out.nz, &out.intensity}) {
-    array->resize(near.size());
-  }
+  for (auto* array : pointArrays(out)) array->resize(near.size());
   std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
   for (const Near& point : near) {
     const std::size_t i = point.index, to = next[point.cube]++;

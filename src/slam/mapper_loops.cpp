@@ -124,12 +124,10 @@ void Mapper::State::askForPlace() {
     const auto reckoned = back_end.reckonedFrom(*pose);
     if (reckoned) place.expected = std::make_shared<ExpectedPlace>(back_end.graph(), *reckoned);
   }
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < rooms.size() && chosen < kRoomsAtOnce; ++i) {
+  const std::size_t most = place.elsewhere.size() + kRoomsAtOnce;
+  for (std::size_t i = 0; i < rooms.size() && place.elsewhere.size() < most; ++i) {
     const MapPose& room = rooms[next_room++ % rooms.size()];
-    if (!place.admitsNear(room)) continue;
-    place.elsewhere.push_back(room);
-    ++chosen;
+    if (place.admitsNear(room)) place.elsewhere.push_back(room);
   }
   question->place = std::make_shared<const PlaceQuestion>(std::move(place));
   T_reckoned_at_question = localiser.reckonedPose();

@@ -2,12 +2,11 @@
 // Maps that are saved, emptied and begun again.
 #include <gtest/gtest.h>
 #include <posefusion/GetMap.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include "../full_disk.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/saved_map_file.hpp"
 #include "posefusion_ros/surfel_cloud.hpp"
@@ -15,27 +14,6 @@
 
 namespace posefusion_ros {
 namespace {
-
-/// While it lives no file grows beyond some kilobytes: as on a full disk.
-class FullDisk {
- public:
-  FullDisk() : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit small = before_;
-    small.rlim_cur = 20000;
-    setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  sighandler_t handler_;
-  rlimit before_{};
-};
 
 TEST_F(ChainSaving, ResetKeepsTheMapAndSaveReportsWhere) {
   load("services", folder / "out");
@@ -180,7 +158,7 @@ TEST_F(ChainSaving, WhereTheDiskIsFullASaveIsRefusedAndLeavesNothing) {
   for (int i = 0; i < 3; ++i) process(i);
   std_srvs::TriggerResponse refused;
   {
-    const FullDisk full;
+    const pf::FullDisk full(20'000);
     refused = chain->call("save_map");
   }
   EXPECT_FALSE(refused.success);
