@@ -9,6 +9,7 @@
 #include <string>
 
 #include "posefusion/core/parallel.hpp"
+#include "simulator/body_shape.hpp"
 #include "simulator/loose_posture.hpp"
 #include "simulator/person_samples.hpp"
 
@@ -52,6 +53,7 @@ bool isOn(const cv::Mat& person, const cv::Point2f& place, int id) {
 
 TEST(PersonSamples, SeenJointsLieOnTheirPeople) {
   int pictures = 0, with_people = 0, joints = 0, on = 0, pixels = 0, without_depth = 0;
+  int near = 0, cut = 0;
   const auto start = std::chrono::steady_clock::now();
   for (std::uint32_t room = 0; room < 3; ++room) {
     for (const PersonSample& sample : drawSamples(7, room)) {
@@ -61,13 +63,19 @@ TEST(PersonSamples, SeenJointsLieOnTheirPeople) {
       without_depth += cv::countNonZero(sample.depth_mm == 0);
       for (std::size_t i = 0; i < sample.people.size(); ++i) {
         const auto& truth = sample.people[i];
+        const int id = static_cast<int>(i) + 1;
+        near += truth.pixels > 160 * 120 / 4 ? 1 : 0;
+        cut += cv::countNonZero(sample.person.col(0) == id) > 0 ||
+                       cv::countNonZero(sample.person.col(159) == id) > 0
+                   ? 1
+                   : 0;
         for (std::size_t j = 0; j < truth.joints.size(); ++j) {
           if (truth.states[j] == JointState::unseen) {
             EXPECT_EQ(truth.joints[j], cv::Point2f(-1.0F, -1.0F));
             continue;
           }
           ++joints;
-          on += isOn(sample.person, truth.joints[j], static_cast<int>(i) + 1) ? 1 : 0;
+          on += isOn(sample.person, truth.joints[j], id) ? 1 : 0;
         }
       }
     }
@@ -78,8 +86,48 @@ TEST(PersonSamples, SeenJointsLieOnTheirPeople) {
   EXPECT_GE(on, 0.99 * joints);
   EXPECT_GT(with_people, 0.5 * pictures);
   EXPECT_LT(with_people, 0.95 * pictures);
+  EXPECT_GT(near, 0.05 * pictures);  // a quarter of the picture and more
+  EXPECT_GT(cut, 0.1 * pictures);
   EXPECT_GT(without_depth, 0.03 * pixels);
   EXPECT_LT(without_depth, 0.5 * pixels);
+}
+
+float distanceTo(const std::vector<Blob>& blobs, const Eigen::Vector3f& p) {
+  float least = 1e9F;
+  for (const Blob& blob : blobs) least = std::min(least, blob.distance(p));
+  return least;
+}
+
+TEST(Garments, WidenTheBodyWhereTheyAreWornAndNowhereElse) {
+  const Rig rig{Build()};
+  Outfit plain = drawOutfit(3, false), worn = plain;
+  worn.garments.hem = 0.8F;
+  worn.garments.flare_m = 0.1F;
+  worn.garments.thickness_m = 0.03F;
+  worn.garments.rucksack = worn.garments.bag = true;
+  const auto before = bodyBlobs(rig, plain), after = bodyBlobs(rig, worn);
+  Dice dice(5);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3f p(random(dice, -0.5, 0.5), random(dice, -0.6, 0.6), random(dice, 0, 1.9));
+    EXPECT_LE(distanceTo(after, p), distanceTo(before, p) + 1e-6F);
+  }
+  const Eigen::Vector3f behind(-0.25F, 0.0F, 1.25F), hip(0.0F, 0.26F, 0.92F),
+      shin(0.0F, 0.0F, 0.4F), floor(0.0F, 0.0F, 0.0F);
+  for (const auto& p : {behind, hip, shin}) {
+    EXPECT_GT(distanceTo(before, p), 0.0F) << p.transpose();
+    EXPECT_LT(distanceTo(after, p), 0.0F) << p.transpose();
+  }
+  EXPECT_GT(distanceTo(after, floor), 0.0F);
+}
+
+TEST(Garments, AboutHalfOfAllPeopleWearSome) {
+  int some = 0;
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    const Garments g = drawGarments(seed);
+    some += g.hem > 0.0F || g.thickness_m > 0.0F || g.rucksack || g.bag ? 1 : 0;
+  }
+  EXPECT_GT(some, 160);
+  EXPECT_LT(some, 280);
 }
 
 /// Lengths between joints that a bone connects.

@@ -71,7 +71,8 @@ def load_exported(network, path, inputs):
         raise RuntimeError(f"{path}: its convolutions are not those of network.py: {shapes[1]}, "
                            f"expected {shapes[0]}")
     behind = normalisations(network)
-    for convolution, (weight, bias) in zip(ours, theirs):
+    for convolution, parts in zip(ours, theirs):
+        weight, bias = (part.to(convolution.weight.device) for part in parts)
         if convolution in behind:
             fresh = math.prod(weight.shape[1:]) ** -0.5 / math.sqrt(3)  # PyTorch's first weights
             scale = float(weight.std()) / fresh

@@ -6,6 +6,7 @@ import time
 
 import cv2
 import numpy as np
+import torch
 
 from samples import FARTHEST_M, NEAREST_M, SAMPLE, generate, network_input, read_room
 
@@ -15,7 +16,7 @@ REACH = 2.0  # cells of 4x4 pixels between a joint and its peak
 
 
 def validation_rooms(program, rooms):
-    process = generate(program, VALIDATION_SEED, 0, rooms)
+    process = generate(program, VALIDATION_SEED, 0, rooms, 0)
     samples = np.concatenate([read_room(process) for _ in range(rooms)])
     process.wait()
     return samples.view(SAMPLE)
@@ -108,7 +109,7 @@ def measure(answers, samples):
     report = Report()
     for first in range(0, len(samples), 32):
         batch = samples[first:first + 32]
-        mask, joints = answers(network_input(batch["depth"]))
+        mask, joints = answers(network_input(torch.from_numpy(batch["depth"].astype(np.float32))))
         for i, sample in enumerate(batch):
             report.add(sample, mask[i, 0], joints[i])
     return report.summary()
@@ -151,7 +152,7 @@ def measure_recording(answers, folder, every):
     for depth_file, mask_file in list(zip(depths, masks, strict=True))[::every]:
         depth = cv2.imread(str(depth_file), cv2.IMREAD_UNCHANGED).astype(np.float32) / factor
         truth = cv2.imread(str(mask_file), cv2.IMREAD_GRAYSCALE) > 0
-        mask, _ = answers(network_input(1000 * shrunk(depth)[None]))
+        mask, _ = answers(network_input(torch.from_numpy(1000 * shrunk(depth)[None])))
         report.add_mask(depth > 0, truth, mask[0, 0])
     names = list(report.summary())[:6]
     return {name: report.summary()[name] for name in names}

@@ -33,14 +33,27 @@ def read_room(process):
     return np.frombuffer(data, SAMPLE)
 
 
-class Pool:
-    """The latest rooms. Batches are drawn from all of them; what is drawn depends on the numbers
-    of rooms taken in and of batches drawn, not on time."""
+def tensors(samples, device="cpu"):
+    """The fields of samples, each a tensor; depth as 16 bits with a sign, which 32 m fit in."""
+    fields = {"depth": samples["depth"].astype(np.int16), "person": samples["person"],
+              "joints": samples["joints"], "centre": samples["centre"]}
+    return {name: torch.from_numpy(np.ascontiguousarray(field)).to(device)
+            for name, field in fields.items()}
 
-    def __init__(self, program, seed, first_room, capacity):
-        self.rooms = np.zeros((capacity, ROOM), SAMPLE)
+
+class Pool:
+    """The latest rooms, where the network is. Batches are drawn from all of them; what is drawn
+    depends on the numbers of rooms taken in and of batches drawn, not on time."""
+
+    def __init__(self, generator, first_room, capacity, device="cpu"):
+        """`generator`: program, seed, threads."""
+        program, seed, threads = generator
+        blank = tensors(np.zeros(1, SAMPLE), device)
+        self.samples = {name: field.repeat(capacity * ROOM, *[1] * (field.dim() - 1))
+                        for name, field in blank.items()}
+        self.capacity, self.device = capacity, device
         self.taken = 0
-        self.process = generate(program, seed, first_room, 1 << 24)
+        self.process = generate(program, seed, first_room, 1 << 24, threads)
         self.ahead = queue.Queue(4)
         threading.Thread(target=self._read, daemon=True).start()
 
@@ -57,60 +70,60 @@ class Pool:
             room = self.ahead.get()
             if isinstance(room, Exception):
                 raise room
-            self.rooms[self.taken % len(self.rooms)] = room
+            start = self.taken % self.capacity * ROOM
+            for name, field in tensors(room, self.device).items():
+                self.samples[name][start:start + ROOM] = field
             self.taken += 1
 
     def draw(self, size, dice):
-        filled = min(self.taken, len(self.rooms)) * ROOM
-        return self.rooms.reshape(-1)[dice.integers(0, filled, size)]
+        filled = min(self.taken, self.capacity) * ROOM
+        which = torch.from_numpy(dice.integers(0, filled, size)).to(self.device)
+        return {name: field[which] for name, field in self.samples.items()}
 
     def close(self):
         self.process.kill()
 
 
 def network_input(depth_mm):
-    """Bx3x120x160 of depth in millimetres, as depth_input.hpp makes it."""
-    depth = torch.from_numpy(depth_mm.astype(np.float32)) / 1000
+    """Bx3x120x160 of depth in millimetres (a tensor), as depth_input.hpp makes it."""
+    depth = depth_mm.float() / 1000
     valid = (depth > NEAREST_M) & (depth < FARTHEST_M)
-    safe = torch.where(valid, depth, torch.ones(()))
+    safe = torch.where(valid, depth, torch.ones_like(depth))
     return torch.stack((valid / safe, torch.log(safe), valid.float()), 1)
 
 
 def mirrored(samples):
-    samples = samples.copy()
-    samples["depth"] = samples["depth"][:, :, ::-1]
-    samples["person"] = samples["person"][:, :, ::-1]
-    samples["joints"] = samples["joints"][:, :, MIRRORED]
-    samples["joints"][..., 0] = 159 - samples["joints"][..., 0]
-    samples["centre"][..., 0] = 159 - samples["centre"][..., 0]
-    return samples
+    joints, centre = samples["joints"][:, :, MIRRORED], samples["centre"].clone()
+    joints[..., 0] = 159 - joints[..., 0]
+    centre[..., 0] = 159 - centre[..., 0]
+    return {"depth": samples["depth"].flip(-1), "person": samples["person"].flip(-1),
+            "joints": joints, "centre": centre}
 
 
 def bells(places, present, sigma):
     """Bell curves at places (B, people, maps, 2; pixels): the largest of all people, B x maps x 30
     x 40."""
     cell = (places + 0.5) / 4 - 0.5
-    x = torch.exp(-(torch.arange(40) - cell[..., 0:1]) ** 2 / (2 * sigma ** 2))
-    y = torch.exp(-(torch.arange(30) - cell[..., 1:2]) ** 2 / (2 * sigma ** 2))
+    cols, rows = (torch.arange(count, device=cell.device) for count in (40, 30))
+    x = torch.exp(-(cols - cell[..., 0:1]) ** 2 / (2 * sigma ** 2))
+    y = torch.exp(-(rows - cell[..., 1:2]) ** 2 / (2 * sigma ** 2))
     return ((y * present[..., None])[..., None] * x[..., None, :]).amax(1)
 
 
 def targets(samples):
     """The answers that the network learns, and their weights."""
-    person = torch.from_numpy((samples["person"] > 0).astype(np.float32))
-    seen = torch.from_numpy((samples["depth"] > 0).astype(np.float32))
+    person, seen = ((samples[name] > 0).float() for name in ("person", "depth"))
     pooled = torch.nn.functional.avg_pool2d
-    joints = torch.from_numpy(samples["joints"].copy())
-    centre = torch.from_numpy(samples["centre"].copy())
+    joints, centre = samples["joints"], samples["centre"]
     behind = bells(joints[..., :2], (joints[..., 2] == 1).float(), JOINT_SIGMA) > 0.1
     inside = ((centre[..., 0] > -4) & (centre[..., 0] < 164) & (centre[..., 1] > -4)
               & (centre[..., 1] < 124) & (centre[..., 2] >= LEAST_PIXELS))
     # Offsets where the middle of a cell shows a body.
-    shown = torch.from_numpy(samples["person"][:, 2::4, 2::4].astype(np.int64))
-    owner = (shown - 1).clamp(0, PEOPLE - 1).reshape(len(samples), -1, 1).expand(-1, -1, 3)
-    goal = torch.gather(centre, 1, owner).reshape(len(samples), 30, 40, 3)
-    place = torch.stack(torch.meshgrid(4 * torch.arange(40) + 1.5, 4 * torch.arange(30) + 1.5,
-                                       indexing="xy"), -1)
+    shown = samples["person"][:, 2::4, 2::4].long()
+    owner = (shown - 1).clamp(0, PEOPLE - 1).reshape(len(shown), -1, 1).expand(-1, -1, 3)
+    goal = torch.gather(centre, 1, owner).reshape(len(shown), 30, 40, 3)
+    cols, rows = (4 * torch.arange(count, device=shown.device) + 1.5 for count in (40, 30))
+    place = torch.stack(torch.meshgrid(cols, rows, indexing="xy"), -1)
     offset = ((goal[..., :2] - place) / 10).clamp(-15, 15)
     known = (shown > 0) & (goal[..., 0] != -1)
     return {

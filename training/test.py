@@ -8,13 +8,12 @@ import unittest
 
 import numpy as np
 import torch
-from torch.nn import functional
 
 from exported import load_exported
 from network import PersonNetwork
 from report import opencv_answers, validation_rooms
-from samples import mirrored, network_input, targets
-from train import Training, export, torch_answers
+from samples import mirrored, network_input, targets, tensors
+from train import Schedule, Training, export, torch_answers
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODEL = ROOT / "models" / "person.onnx"
@@ -23,30 +22,20 @@ GENERATOR = ROOT / "devel" / "lib" / "posefusion" / "posefusion_person_data"
 
 def started():
     """Training continued from the model of the package."""
-    training = Training(argparse.Namespace(seed=1, rate=1e-3, bfloat16=False))
+    training = Training(argparse.Namespace(seed=1, rate=1e-3, device="cpu"))
     load_exported(training.network, MODEL, network_input(SAMPLES["depth"]))
     return training
 
 
-def gradient(training, samples, loss, bfloat16):
-    """Of the last layers before the heads: farther down it is lost in bfloat16's rounding, the
-    more so the less a trained model has to learn."""
-    network = training.network
-    network.zero_grad(set_to_none=True)
-    training.losses(samples, bfloat16)[loss].backward()
-    last = [*network.up_second.blocks[-1].parameters(), *network.points[-1].parameters()]
-    return torch.cat([one.grad.flatten() for one in last if one.grad is not None])
-
-
 class Exported(unittest.TestCase):
     def test_the_network_answers_as_the_model_that_it_goes_on_from(self):
-        inputs = network_input(SAMPLES["depth"][:16])
+        inputs = network_input(SAMPLES["depth"])[:16]
         theirs = opencv_answers(str(MODEL))[0](inputs)
         for ours, expected in zip(torch_answers(started().network)(inputs), theirs):
             np.testing.assert_allclose(ours, expected, atol=1e-3)
 
     def test_an_export_is_taken_up_again(self):
-        inputs = network_input(SAMPLES["depth"][:16])
+        inputs = network_input(SAMPLES["depth"])[:16]
         other = started().network
         with torch.no_grad():
             for one in other.parameters():
@@ -66,14 +55,26 @@ class Exported(unittest.TestCase):
             load_exported(smaller, MODEL, network_input(SAMPLES["depth"]))
 
 
-class Gradients(unittest.TestCase):
-    def test_bfloat16_has_those_of_float32(self):
-        """With the heads in bfloat16 nothing before the mask's learnt from it: a fault of
-        PyTorch's."""
-        training = started()
-        for loss in ("mask", "joints", "centre", "offset"):
-            both = (gradient(training, SAMPLES[:32], loss, bfloat16) for bfloat16 in (True, False))
-            self.assertGreater(float(functional.cosine_similarity(*both, 0)), 0.9, loss)
+class Steps(unittest.TestCase):
+    def test_the_rate_rises_and_falls_with_images_or_time(self):
+        o = argparse.Namespace(rate=1.0, batch=32, images=100000, minutes=1e9)
+        by_images = [Schedule(o).rate(images) for images in (0, 20000, 60000, 100000)]
+        self.assertLess(by_images[0], 0.001)
+        self.assertEqual(sorted(by_images[1:], reverse=True), by_images[1:])
+        late = Schedule(argparse.Namespace(rate=1.0, batch=32, images=100000, minutes=1.0))
+        late.start -= 59
+        self.assertLess(late.rate(20000), 0.1)
+        late.start -= 2
+        self.assertEqual(late.part(20000), 1.0)
+
+    def test_a_few_steps_lower_every_loss(self):
+        training = Training(argparse.Namespace(seed=1, rate=1e-3, device="cpu"))
+        batch = {name: field[:32] for name, field in SAMPLES.items()}
+        first = training.step(batch, 1e-3)
+        for _ in range(12):
+            last = training.step(batch, 1e-3)
+        for name, loss in first.items():
+            self.assertLess(float(last[name]), float(loss), name)
 
 
 class Samples(unittest.TestCase):
@@ -85,11 +86,11 @@ class Samples(unittest.TestCase):
 
     def test_mirrored_twice_is_the_same(self):
         again = mirrored(mirrored(SAMPLES))
-        for field in SAMPLES.dtype.names:
+        for field in SAMPLES:
             np.testing.assert_allclose(again[field], SAMPLES[field], atol=1e-4)
 
 
 if __name__ == "__main__":
     torch.set_num_threads(1)
-    SAMPLES = validation_rooms(str(GENERATOR), 4)
+    SAMPLES = tensors(validation_rooms(str(GENERATOR), 4))
     unittest.main()

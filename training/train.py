@@ -2,6 +2,7 @@
 """Trains the person model on simulated pictures and exports it. See README.md."""
 import argparse
 import copy
+import inspect
 import json
 import os
 import pathlib
@@ -18,8 +19,8 @@ from report import measure, opencv_answers, validation_rooms
 from samples import ROOM, Pool, mirrored, network_input, targets
 
 FIRST_ROOMS = 40  # taken in before the first step
-CAPACITY = 256    # rooms in memory, 1.5 GB
 WORST = 1e-3      # by which answers of the same weights may differ between programs
+WORST_GPU = 0.1   # a GPU's convolutions round to ten bits (TF32)
 
 
 def options():
@@ -27,13 +28,16 @@ def options():
     parser.add_argument("--folder", default="output/person", help="checkpoints and models")
     parser.add_argument("--generator", default="devel/lib/posefusion/posefusion_person_data")
     parser.add_argument("--images", type=int, default=1000000, help="train until so many are seen")
+    parser.add_argument("--minutes", type=float, default=1e9,
+                        help="ends after so long at the latest; the rate falls along the time, too")
+    parser.add_argument("--device", default="cpu", help="cuda: a GPU, where there is one")
     parser.add_argument("--batch", type=int, default=32)
     parser.add_argument("--rate", type=float, default=2e-3, help="highest learning rate")
     parser.add_argument("--reuse", type=int, default=3, help="times a picture is seen, about")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--capacity", type=int, default=256, help="rooms kept, 6 MB each")
     parser.add_argument("--threads", type=int, default=1, help="of PyTorch")
-    parser.add_argument("--bfloat16", action="store_true",
-                        help="1.6 times as fast where the processor has it (avx512_bf16, amx)")
+    parser.add_argument("--generator-threads", type=int, default=1)
     parser.add_argument("--every", type=int, default=10000, help="images between reports")
     parser.add_argument("--validation-rooms", type=int, default=12)
     parser.add_argument("--start", type=pathlib.Path,
@@ -56,10 +60,25 @@ def losses(answers, wanted):
     }
 
 
-def rate_at(image, o):
-    """Up over the first images, then down along a cosine (Loshchilov and Hutter 2017)."""
-    part = image / o.images
-    return o.rate * min(1, (image + 1) / 5000) * max(0.01, 0.5 + 0.5 * np.cos(np.pi * part))
+class Schedule:
+    """How far the training is: by images or by time, whichever is further."""
+
+    def __init__(self, o):
+        self.o, self.start = o, time.time()
+
+    def part(self, images):
+        minutes = (time.time() - self.start) / 60
+        return min(1.0, max(images / max(1, self.o.images), minutes / self.o.minutes))
+
+    def rate(self, images):
+        """Up over the first steps, then down along a cosine (Loshchilov and Hutter 2017)."""
+        warm = min(1.0, (images + 1) / (160 * self.o.batch))
+        return self.o.rate * warm * max(0.01, 0.5 + 0.5 * np.cos(np.pi * self.part(images)))
+
+
+def in_memory(values):
+    """A network or pictures, in the order that PyTorch is fastest with on a processor."""
+    return values.to(memory_format=torch.channels_last)
 
 
 class Training:
@@ -67,9 +86,9 @@ class Training:
 
     def __init__(self, o):
         torch.manual_seed(o.seed)
-        self.network = PersonNetwork().to(memory_format=torch.channels_last)
+        self.device = torch.device(o.device)
+        self.network = in_memory(PersonNetwork().to(self.device))
         self.smooth = copy.deepcopy(self.network)
-        self.bfloat16 = o.bfloat16
         self.optimiser = torch.optim.AdamW(self.network.parameters(), o.rate, weight_decay=1e-2)
         self.images = self.rooms = 0
 
@@ -84,39 +103,31 @@ class Training:
         self.optimiser.load_state_dict(state["optimiser"])
         self.images, self.rooms = state["images"], state["rooms"]
 
-    def losses(self, samples, bfloat16):
+    def losses(self, samples):
         """Of the network in training, by name."""
-        inputs = network_input(samples["depth"]).contiguous(memory_format=torch.channels_last)
         self.network.train()
-        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=bfloat16):
-            features = self.network.features(inputs)
-        # Not the heads: in bfloat16, PyTorch 1.13 computes a wrong gradient through a convolution
-        # to one channel, and nothing before the mask's learns from it.
-        answers = self.network.heads(*(feature.float() for feature in features))
-        return losses(answers, targets(samples))
+        return losses(self.network(in_memory(network_input(samples["depth"]))), targets(samples))
 
     def step(self, samples, rate):
         for group in self.optimiser.param_groups:
             group["lr"] = rate
-        parts = self.losses(samples, self.bfloat16)
+        parts = self.losses(samples)
         self.optimiser.zero_grad(set_to_none=True)
         sum(parts.values()).backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
         self.optimiser.step()
-        self.images += len(samples)
+        self.images += len(samples["depth"])
         self.follow()
-        return {name: float(part) for name, part in parts.items()}
+        return {name: part.detach() for name, part in parts.items()}
 
     def follow(self):
         """The smoothed copy: a mean over the last thousands of images, less of the first ones."""
         part = max(0.002, 50 / (50 + self.images / 10))
+        mine, theirs = ([value for value in network.state_dict().values()
+                         if value.is_floating_point()] for network in (self.smooth, self.network))
         with torch.no_grad():
-            theirs = self.network.state_dict()
-            for name, mine in self.smooth.state_dict().items():
-                if mine.is_floating_point():
-                    mine.lerp_(theirs[name], part)
-                else:
-                    mine.copy_(theirs[name])
+            torch._foreach_mul_(mine, 1 - part)
+            torch._foreach_add_(mine, theirs, alpha=part)
 
 
 def replace(path, write):
@@ -127,12 +138,16 @@ def replace(path, write):
 
 def export(network, path):
     """ONNX of the probabilities; checks that OpenCV computes the same."""
-    answers = Answers(copy.deepcopy(network)).to(memory_format=torch.contiguous_format)
+    answers = Answers(copy.deepcopy(network)).to("cpu", memory_format=torch.contiguous_format)
     answers.eval()  # the wrapper too: else the export is of a network in training
     inputs = torch.rand(1, 3, 120, 160)
     names = ["mask", "joints", "centre"]
-    replace(path, lambda name: torch.onnx.export(answers, inputs, name, input_names=["depth"],
-                                                 output_names=names, opset_version=11))
+    # Newer PyTorch has another exporter, whose files OpenCV 4.6 does not read.
+    known = inspect.signature(torch.onnx.export).parameters
+    older = {"dynamo": False} if "dynamo" in known else {}
+    replace(path, lambda name: torch.onnx.export(
+        answers, inputs, name, input_names=["depth"], output_names=names, opset_version=11,
+        **older))
     opencv = cv2.dnn.readNetFromONNX(str(path))
     opencv.setInput(inputs.numpy())
     with torch.no_grad():
@@ -146,11 +161,12 @@ def export(network, path):
 def torch_answers(network):
     """Mask and joints, as report.py asks for them."""
     network.eval()
+    device = next(network.parameters()).device
 
     def answers(inputs):
         with torch.no_grad():
-            mask, joints, _ = network(inputs.contiguous(memory_format=torch.channels_last))
-        return torch.sigmoid(mask).numpy(), torch.sigmoid(joints).numpy()
+            mask, joints, _ = network(in_memory(inputs.to(device)))
+        return torch.sigmoid(mask).cpu().numpy(), torch.sigmoid(joints).cpu().numpy()
     return answers
 
 
@@ -160,60 +176,85 @@ def start_from(training, model, samples):
     load_exported(training.network, model, inputs)
     training.smooth.load_state_dict(training.network.state_dict())
     pairs = zip(torch_answers(training.smooth)(inputs[:64]),
-                opencv_answers(str(model))[0](inputs[:64]))
+                opencv_answers(str(model))[0](inputs[:64].cpu()))
     worst = max(float(np.abs(ours - theirs).max()) for ours, theirs in pairs)
-    if worst > WORST:
+    most = WORST if training.device.type == "cpu" else WORST_GPU
+    if worst > most:
         raise RuntimeError(f"{model}: answers differ by {worst} after taking up its weights, "
-                           f"expected at most {WORST}")
+                           f"expected at most {most}")
     print(f"goes on from {model}", flush=True)
 
 
 def report(training, validation, folder):
     summary = measure(torch_answers(training.smooth), validation)
     summary["images"] = training.images
-    summary["differs from OpenCV by"] = export(training.smooth, folder / "person.onnx")
     replace(folder / "checkpoint.pt", lambda name: torch.save(training.state(), name))
+    summary["differs from OpenCV by"] = export(training.smooth, folder / "person.onnx")
     with open(folder / "reports.jsonl", "a", encoding="utf-8") as file:
         file.write(json.dumps(summary) + "\n")
     print(json.dumps(summary), flush=True)
 
 
-def main():
-    o = options()
-    torch.set_num_threads(o.threads)
-    folder = pathlib.Path(o.folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    training = Training(o)
-    if (folder / "checkpoint.pt").exists():
-        training.load(torch.load(folder / "checkpoint.pt"))
-        print(f"goes on after {training.images} images", flush=True)
-    validation = validation_rooms(o.generator, o.validation_rooms)
-    # After a break the pool is filled with rooms that it had.
-    first = max(0, training.rooms - FIRST_ROOMS)
-    pool = Pool(o.generator, o.seed, first, CAPACITY)
+class Progress:
+    """Means of the losses since the last line, and images per second."""
+
+    def __init__(self, images):
+        self.sums, self.images, self.start = {}, images, time.time()
+        self.steps = 0
+
+    def add(self, parts):
+        self.sums = {name: self.sums.get(name, 0) + part for name, part in parts.items()}
+        self.steps += 1
+
+    def show(self, images):
+        speed = (images - self.images) / (time.time() - self.start)
+        text = " ".join(f"{name} {float(value) / self.steps:.4f}"
+                        for name, value in self.sums.items())
+        print(f"{images} images, {speed:.0f}/s: {text}", flush=True)
+        self.__init__(images)
+
+
+def train(training, pool, first, validation, o):
     dice = np.random.default_rng([o.seed, training.images])
     if o.start and training.images == 0:
         pool.take(FIRST_ROOMS)
         start_from(training, o.start, pool.draw(512, dice))
-    sums, steps, start = {}, 0, time.time()
-    while training.images < o.images:
+    schedule, progress = Schedule(o), Progress(training.images)
+    while schedule.part(training.images) < 1.0:
         training.rooms = FIRST_ROOMS + training.images // (o.reuse * ROOM)
         pool.take(training.rooms - first)
         samples = pool.draw(o.batch, dice)
         if dice.random() < 0.5:
             samples = mirrored(samples)
-        parts = training.step(samples, rate_at(training.images, o))
-        sums = {name: sums.get(name, 0) + part for name, part in parts.items()}
-        steps += 1
-        if training.images // 1600 != (training.images - o.batch) // 1600:
-            speed = steps * o.batch / (time.time() - start)
-            text = " ".join(f"{name} {value / steps:.4f}" for name, value in sums.items())
-            print(f"{training.images} images, {speed:.0f}/s: {text}", flush=True)
-            sums, steps, start = {}, 0, time.time()
-        if training.images // o.every != (training.images - o.batch) // o.every:
-            report(training, validation, folder)
+        progress.add(training.step(samples, schedule.rate(training.images)))
+        passed = [training.images // every != (training.images - o.batch) // every
+                  for every in (50 * o.batch, o.every)]
+        if passed[0]:
+            progress.show(training.images)
+        if passed[1]:
+            report(training, validation, pathlib.Path(o.folder))
+
+
+def main():
+    o = options()
+    torch.set_num_threads(o.threads)
+    torch.backends.cudnn.benchmark = True
+    folder = pathlib.Path(o.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    training = Training(o)
+    if (folder / "checkpoint.pt").exists():
+        training.load(torch.load(folder / "checkpoint.pt", map_location=o.device))
+        print(f"goes on after {training.images} images", flush=True)
+    validation = validation_rooms(o.generator, o.validation_rooms)
+    # After a break the pool is filled with rooms that it had.
+    first = max(0, training.rooms - FIRST_ROOMS)
+    generator = (o.generator, o.seed, o.generator_threads)
+    pool = Pool(generator, first, o.capacity, o.device)
+    try:
+        train(training, pool, first, validation, o)
+    finally:
+        pool.close()
     report(training, validation, folder)
-    pool.close()
 
 
 if __name__ == "__main__":

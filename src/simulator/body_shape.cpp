@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace pf::simulator {
 
@@ -111,6 +112,56 @@ void addLeg(std::vector<Blob>& out, const Rig& rig, const Outfit& outfit, float 
   out.push_back({foot, c, 0.5F * (c + toe) + s * Vector3f(0, 0, 0.01F), 0.046F, 0.042F});
 }
 
+/// A skirt or the lower part of a coat: wide legs that flow into each other.
+void addHem(std::vector<Blob>& out, const Rig& rig, const Garments& wear) {
+  const float g = static_cast<float>(rig.build.stoutness);
+  const float hips = 0.125F * g, wide = hips + wear.flare_m;
+  for (const float side : {1.0F, -1.0F}) {
+    const auto thigh = side > 0 ? Bone::left_thigh : Bone::right_thigh;
+    const auto shin = side > 0 ? Bone::left_shin : Bone::right_shin;
+    const Vector3f a = rig.start[index(thigh)], b = rig.start[index(shin)],
+                   c = rig.end[index(shin)];
+    const float upper = std::min(1.0F, 2.0F * wear.hem),
+                lower = std::max(0.0F, 2.0F * wear.hem - 1);
+    const float knee = hips + (wide - hips) * upper / (upper + lower);
+    out.push_back({thigh, a, a + upper * (b - a), hips, knee});
+    if (lower > 0.0F) out.push_back({shin, b, b + lower * (c - b), knee, wide});
+  }
+}
+
+/// Chest, waist and arms of what is there so far.
+void thicken(float by_m, std::vector<Blob>& blobs) {
+  static const std::set<Bone> covered = {Bone::spine,           Bone::chest,
+                                         Bone::left_upper_arm,  Bone::left_forearm,
+                                         Bone::right_upper_arm, Bone::right_forearm};
+  for (Blob& blob : blobs) {
+    if (covered.count(blob.bone) == 0) continue;
+    blob.radius_a += by_m;
+    blob.radius_b += by_m;
+  }
+}
+
+void addWorn(std::vector<Blob>& out, const Rig& rig, const Garments& wear) {
+  const float s = rig.scale();
+  if (wear.rucksack) {
+    const float back = -0.21F - wear.thickness_m;
+    out.push_back({Bone::chest,
+                   s * Vector3f(back, 0, 1.10F),
+                   s * Vector3f(back, 0, 1.38F),
+                   0.14F,
+                   0.12F,
+                   {0.7F, 1.0F, 1.0F}});
+  }
+  if (wear.bag) {
+    out.push_back({Bone::pelvis,
+                   s * Vector3f(-0.08F, 0.24F, 0.92F),
+                   s * Vector3f(0.1F, 0.24F, 0.92F),
+                   0.15F,
+                   0.15F,
+                   {1.0F, 0.5F, 1.0F}});
+  }
+}
+
 }  // namespace
 
 std::vector<Blob> bodyBlobs(const Rig& rig, const Outfit& outfit) {
@@ -120,6 +171,9 @@ std::vector<Blob> bodyBlobs(const Rig& rig, const Outfit& outfit) {
     addArm(blobs, rig, outfit, side);
     addLeg(blobs, rig, outfit, side);
   }
+  if (outfit.garments.thickness_m > 0.0F) thicken(outfit.garments.thickness_m, blobs);
+  if (outfit.garments.hem > 0.0F) addHem(blobs, rig, outfit.garments);
+  addWorn(blobs, rig, outfit.garments);
   scaleAll(blobs, rig.scale());
   return blobs;
 }

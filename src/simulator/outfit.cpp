@@ -70,6 +70,19 @@ Outfit drawOutfit(std::uint32_t seed, bool feminine) {
   return o;
 }
 
+Garments drawGarments(std::uint32_t seed) {
+  Dice dice(hash(seed, 502U));
+  Garments g;
+  if (dice.chance(0.25)) {
+    g.hem = static_cast<float>(dice.between(0.35, 0.95));
+    g.flare_m = static_cast<float>(dice.between(0.0, 0.12));
+  }
+  if (dice.chance(0.3)) g.thickness_m = static_cast<float>(dice.between(0.01, 0.05));
+  g.rucksack = dice.chance(0.12);
+  g.bag = dice.chance(0.10);
+  return g;
+}
+
 Appearance::Appearance(const Rig& rig, const Outfit& outfit) : rig_(rig), outfit_(outfit) {}
 
 Appearance::Stuff Appearance::stuffAt(const SurfacePoint& point) const {

@@ -12,6 +12,15 @@ enum class HairStyle { bald, cropped, full, longer };
 enum class Pattern { plain, stripes, checks, logo, jacket };
 enum class BodyPart : std::uint8_t { body, head, hand, burden };
 
+/// What widens the outline of a body. Lengths at a height of 1.75 m.
+struct Garments {
+  float hem = 0.0F;          ///< part of the leg that a skirt or long coat covers, 0..1; 0: none
+  float flare_m = 0.0F;      ///< by which the hem is wider than the hips
+  float thickness_m = 0.0F;  ///< of a jacket or coat over torso and arms, beyond a shirt's
+  bool rucksack = false;
+  bool bag = false;  ///< on a strap, at the hip
+};
+
 /// What a person wears and looks like. Colours are linear reflectances.
 struct Outfit {
   Eigen::Vector3f skin{0.55F, 0.36F, 0.27F};
@@ -26,11 +35,15 @@ struct Outfit {
   Eigen::Vector3f trousers{0.05F, 0.07F, 0.13F};
   float trouser_leg = 1.0F;  ///< covered part of the leg, 0..1 (ankle)
   Eigen::Vector3f shoes{0.05F, 0.05F, 0.05F};
+  Garments garments;
   std::uint32_t seed = 0;
 };
 
 /// Clothes, hair and skin drawn by seed.
 Outfit drawOutfit(std::uint32_t seed, bool feminine);
+
+/// Wide clothes and things that are worn, of about half of all people.
+Garments drawGarments(std::uint32_t seed);
 
 /// A point of a person's surface at rest: where, facing where, and the head's hair tag (negative:
 /// hair).

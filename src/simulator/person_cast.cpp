@@ -109,8 +109,8 @@ class Arranger {
     const double lot = dice_.between(0.0, 1.0);
     const int most = static_cast<int>(cast_.size());
     const int count = lot < 0.14   ? 0
-                      : lot < 0.46 ? 1
-                      : lot < 0.72 ? std::min(2, most)
+                      : lot < 0.42 ? 1
+                      : lot < 0.66 ? std::min(2, most)
                                    : std::min(most, 3 + dice_.below(most));
     const int first = dice_.below(most);
     for (int i = 0; i < count; ++i) {
@@ -119,6 +119,7 @@ class Arranger {
       out.present[person] = 1;
       if (i == 0) out.focus.head<2>() = places_.back();
     }
+    if (count > 1) out.others.assign(places_.begin() + 1, places_.end());
     return out;
   }
 
@@ -206,7 +207,9 @@ std::vector<Avatar> drawCast(int count, Dice& dice) {
     build.stoutness = dice.between(0.8, dice.chance(0.25) ? 1.45 : 1.2);
     build.feminine = dice.chance(0.5);
     const std::uint32_t look = dice.next();
-    cast.emplace_back(build, drawOutfit(look, build.feminine), kCoarseness);
+    Outfit outfit = drawOutfit(look, build.feminine);
+    outfit.garments = drawGarments(look);
+    cast.emplace_back(build, outfit, kCoarseness);
   }
   return cast;
 }

@@ -18,6 +18,7 @@ struct Arrangement {
   Postures postures;                                ///< absent people are far below the floor
   std::vector<char> present;                        ///< of each
   Eigen::Vector3d focus = Eigen::Vector3d::Zero();  ///< worth looking at
+  std::vector<Eigen::Vector2d> others;  ///< where the people beside the one in focus are
 };
 
 /// No person (sometimes) up to all of the cast, close together or apart: walking, standing,

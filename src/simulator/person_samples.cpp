@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kCamerasPerArrangement = 4;
@@ -32,17 +33,35 @@ PinholeCamera drawCamera(Dice& dice) {
   return camera;
 }
 
-/// From 0.4 to 6.5 m off the focus, within the room; mostly about level, sometimes as in a fall.
-Isometry3d drawView(const PersonRoom& room, const Vector3d& focus, Dice& dice) {
+/// From 0.4 to 8 m off the focus, sometimes past the shoulder of another person nearby.
+Vector3d drawEye(const Arrangement& people, Dice& dice) {
   const double lot = dice.between(0.0, 1.0), bearing = dice.between(0.0, 2.0 * M_PI);
-  const double distance = lot < 0.12  ? dice.between(0.4, 1.2)
-                          : lot < 0.8 ? dice.between(1.0, 4.0)
-                                      : dice.between(3.0, 6.5);
-  Vector3d eye = focus + distance * Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
+  const Vector3d& focus = people.focus;
+  if (!people.others.empty() && dice.chance(0.2)) {
+    const auto one = static_cast<std::size_t>(dice.below(static_cast<int>(people.others.size())));
+    const Vector2d beside = people.others[one] - focus.head<2>();
+    const Vector2d along = beside.normalized(), across(-along.y(), along.x());
+    const Vector2d eye =
+        people.others[one] + dice.between(0.4, 1.6) * along + dice.between(-0.5, 0.5) * across;
+    return {eye.x(), eye.y(), focus.z()};
+  }
+  const double distance = lot < 0.2    ? dice.between(0.4, 1.2)
+                          : lot < 0.72 ? dice.between(1.0, 4.0)
+                                       : dice.between(3.0, 8.0);
+  return focus + distance * Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
+}
+
+/// Within the room; mostly about level, sometimes as in a fall. In every fifth picture the person
+/// in focus is at the border or cut by it, in every tenth anywhere.
+Isometry3d drawView(const PersonRoom& room, const Arrangement& people, Dice& dice) {
+  const Vector3d& focus = people.focus;
+  Vector3d eye = drawEye(people, dice);
   for (int i = 0; i < 2; ++i) eye[i] = std::clamp(eye[i], 0.15, room.size_m[i] - 0.15);
   eye.z() = dice.between(0.4, 1.9);
+  const double distance = (focus - eye).head<2>().norm();
   Vector3d target = focus;
-  const double astray = dice.chance(0.1) ? 2.0 : 0.3;
+  const double where = dice.between(0.0, 1.0);
+  const double astray = where < 0.1 ? 2.0 : where < 0.3 ? 0.8 : 0.3;
   target.x() += astray * dice.between(-1.0, 1.0) * distance;
   target.y() += astray * dice.between(-1.0, 1.0) * distance;
   target.z() += 0.15 * dice.between(-1.0, 1.0) * distance;
@@ -117,7 +136,7 @@ class Studio {
     const PinholeCamera camera = drawCamera(dice_);
     Isometry3d view;
     for (int attempt = 0; attempt < 6; ++attempt) {
-      view = drawView(room_, arrangement.focus, dice_);
+      view = drawView(room_, arrangement, dice_);
       const ViewSample from{view.linear().cast<float>(), view.translation().cast<float>(), 0.0F};
       renderer_.depth(camera, from, people_, view_);
       if (isWorthShowing(view_.depth_m)) break;
