@@ -14,8 +14,8 @@ namespace {
 constexpr float kMaxShownSpread_m = 0.5F;  // in depth, of the detector's mask around its person
 
 // A new person, found by a detector that gives a mask with every frame.
-constexpr float kSureNewScore = 0.7F;  // believed without the map
-constexpr float kShownNew = 0.5F;      // least probability of the cells considered
+constexpr float kSureNewScore = 0.65F;  // believed without the map
+constexpr float kShownNew = 0.5F;       // least probability of the cells considered
 // Of those that the map knows, this part lies in front of it: the others may be on what was mapped
 // of them while they came in, which it has seen for a few frames only. Furniture that looks like
 // people agrees with it, and nowhere lies in front of it.

@@ -97,7 +97,8 @@ TEST_F(ChainSurfaces, MeshAndGridComeToSubscribersAndFollowTheMap) {
     process(i);
     ros::WallDuration(0.2).sleep();  // the mesh is made at its own pace
   }
-  EXPECT_TRUE(Chain::waitUntil([&] { return viewer.triangles() > 1.05 * before; }))
+  // A mesh that does not follow stays as it was.
+  EXPECT_TRUE(Chain::waitUntil([&] { return viewer.triangles() > 1.02 * before; }))
       << viewer.triangles() << " after " << before;
 }
 
