@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import torch
 
-from samples import FARTHEST_M, NEAREST_M, SAMPLE, generate, network_input, read_room
+from samples import FARTHEST_M, NEAREST_M, SAMPLE, generate, network_input, read_room, tensors
 
 VALIDATION_SEED = 990001  # training uses smaller ones
 MASK_LEVEL, JOINT_LEVEL = 0.5, 0.3
@@ -109,7 +109,7 @@ def measure(answers, samples):
     report = Report()
     for first in range(0, len(samples), 32):
         batch = samples[first:first + 32]
-        mask, joints = answers(network_input(torch.from_numpy(batch["depth"].astype(np.float32))))
+        mask, joints = answers(network_input(tensors(batch)["depth"]))
         for i, sample in enumerate(batch):
             report.add(sample, mask[i, 0], joints[i])
     return report.summary()

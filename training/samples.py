@@ -18,7 +18,7 @@ JOINT_SIGMA, CENTRE_SIGMA = 0.9, 1.3  # cells of 4x4 pixels
 LEAST_PIXELS = 30  # of a person whose centre is learned
 
 
-def generate(program, seed, first_room, rooms, threads=1):
+def generate(program, seed, first_room, rooms, threads):
     """A process that writes the samples of `rooms` rooms to its stdout."""
     return subprocess.Popen(
         [program, "--seed", str(seed), "--first-room", str(first_room), "--rooms", str(rooms),

@@ -95,10 +95,11 @@ TEST_F(ChainSurfaces, MeshAndGridComeToSubscribersAndFollowTheMap) {
   EXPECT_GT(std::count(grid.data.begin(), grid.data.end(), 0), 50) << "free";
   for (int i = 12; i < 40; ++i) {
     process(i);
-    ros::WallDuration(0.2).sleep();  // the mesh is made at its own pace
+    // The mesh is made at its own pace, of a map that frames still come to: the last ones come
+    // slowly.
+    ros::WallDuration(i < 35 ? 0.2 : 1.0).sleep();
   }
-  // A mesh that does not follow stays as it was.
-  EXPECT_TRUE(Chain::waitUntil([&] { return viewer.triangles() > 1.02 * before; }))
+  EXPECT_TRUE(Chain::waitUntil([&] { return viewer.triangles() > 1.05 * before; }))
       << viewer.triangles() << " after " << before;
 }
 
