@@ -131,7 +131,7 @@ TEST(PoseCovariance, IsThatOfPosesDrawnAtRandom) {
   Matrix6d sum = Matrix6d::Zero();
   for (int i = 0; i < kSamples; ++i) {
     Vector6d z;
-    for (double& value : z) value = normal(random);
+    for (int k = 0; k < z.size(); ++k) z[k] = normal(random);  // Eigen 3.3 has no begin()
     const Eigen::Isometry3d T =
         T_map_base * T_base_camera * pf::expSe3(A * z) * T_base_camera.inverse();
     Vector6d error;
