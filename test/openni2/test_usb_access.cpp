@@ -18,12 +18,13 @@ class WithoutRights {
  public:
   WithoutRights() : was_root_(geteuid() == 0) {
     if (was_root_) {
-      EXPECT_EQ(seteuid(65534), 0);
+      // Both: older C libraries ask for the rights of the real one.
+      EXPECT_EQ(setresuid(65534, 65534, 0), 0);
     }
   }
   ~WithoutRights() {
     if (was_root_) {
-      EXPECT_EQ(seteuid(0), 0);
+      EXPECT_EQ(setresuid(0, 0, 0), 0);
     }
   }
 

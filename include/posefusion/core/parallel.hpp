@@ -7,6 +7,8 @@
 #include <tbb/task_arena.h>
 
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 namespace pf {
 
@@ -28,7 +30,11 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
 /// the cores of what cannot wait.
 template <typename Work>
 auto inOneThread(const Work& work) {
-  return tbb::task_arena(1).execute(work);
+  // Not by what execute() returns: where work() throws, TBB 2020 destroys a result that there is
+  // not.
+  std::optional<decltype(work())> result;
+  tbb::task_arena(1).execute([&] { result.emplace(work()); });
+  return std::move(*result);
 }
 
 /// Sum of body(begin, end) over pieces of [0, count): the pieces and the order of the additions
