@@ -8,6 +8,7 @@
 #include <string>
 
 #include "posefusion/blur/gate.hpp"
+#include "posefusion/calibration/color_learner.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion_ros/camera_topics.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
@@ -32,7 +33,9 @@ class BlurGateNodelet : public ChainNodelet {
   void start() override {
     ros::NodeHandle& handle = getNodeHandle();
     Parameters parameters(getPrivateNodeHandle());
-    config_ = parameters.config({"blur"}).blur;
+    const pf::Config config = parameters.config({"blur", "calibration"});
+    config_ = config.blur;
+    color_ = pf::ColorLearner(config.calibration.registersColor());
     input_ = readInput(parameters);
     missing_after_s_ = parameters.number("missing_after_s", 5.0, {0.1, 1e6});
     report(parameters);
@@ -93,7 +96,21 @@ class BlurGateNodelet : public ChainNodelet {
           "blurred: " + std::to_string(blur.measure) + " below " + std::to_string(blur.threshold));
       return;
     }
-    pass(straight, set);
+    pass(registered(straight), set);
+  }
+
+  /// Colour lies over depth from the frame on that the camera is known at.
+  pf::RgbdFrame registered(const pf::RgbdFrame& frame) {
+    const bool was_known = color_.estimate().has_value();
+    pf::RgbdFrame out = color_.registered(frame, true);
+    if (!was_known && color_.estimate() && color_.estimate()->doubt.empty()) {
+      NODELET_WARN(
+          "colour is not registered to depth, %.0f px off: it is registered from now on, as by a "
+          "camera "
+          "with %s",
+          color_.estimate()->offset_px, pf::describe(color_.estimate()->camera).c_str());
+    }
+    return out;
   }
 
   pf::RgbdFrame frameOf(const InputPairing::Set& set) const {
@@ -179,6 +196,7 @@ class BlurGateNodelet : public ChainNodelet {
   std::string clock_defect_;  ///< of the last frame
   GrowingPause missing_pause_, clock_pause_;
   pf::Rectifier rectifier_;
+  pf::ColorLearner color_{false};
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;

@@ -2,7 +2,6 @@
 #include "posefusion/run/run_report.hpp"
 
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
@@ -12,72 +11,17 @@
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/map_picture.hpp"
+#include "summary_parts.hpp"
 
 namespace pf {
 namespace {
 
 using nlohmann::ordered_json;
 
-/// "tracking.max_distance_m" = "0.1" becomes {"tracking": {"max_distance_m": 0.1}}.
-ordered_json configurationJson(const Config& config) {
-  ordered_json out;
-  for (const auto& [key, text] : listFields(config)) {
-    const auto value = ordered_json::parse(text, nullptr, false);
-    const bool literal = value.is_number() || value.is_boolean();
-    const auto dot = key.find('.');
-    out[key.substr(0, dot)][key.substr(dot + 1)] = literal ? value : ordered_json(text);
-  }
-  return out;
-}
-
-ordered_json framesJson(const FrameCounts& f) {
-  return {{"read", f.read},
-          {"bad", f.bad},
-          {"blurred", f.blurred},
-          {"tracked", f.tracked},
-          {"lost", f.lost},
-          {"left_out", f.left_out},
-          {"pose_share", f.poseShare()},
-          {"pose_share_of_sharp", f.sharpPoseShare()},
-          {"by_state", f.by_state},
-          {"by_outcome", f.by_outcome}};
-}
-
-/// Table IV of the paper counts ferns and loops.
-ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) {
-  ordered_json refused;
-  for (std::size_t i = 1; i < c.refused.size(); ++i) {
-    refused[std::string(name(static_cast<PlaceDoubt>(i)))] = c.refused[i];
-  }
-  refused["one_way"] = c.one_way;
-  refused["turned"] = c.turned;
-  refused["graph"] = corrections.refused;
-  return {{"keyframes", c.keyframes},
-          {"ferns", c.ferns},
-          {"ferns_not_static", c.not_static},
-          {"compared", c.compared},
-          {"accepted", c.accepted},
-          {"accepted_local", c.local},
-          {"corrections", corrections.accepted},
-          {"fragments_joined", corrections.joined},
-          {"withdrawn", corrections.withdrawn},
-          {"refused", refused},
-          {"places_searched", c.searched},
-          {"places_found", c.found}};
-}
-
 std::string fixed(double value, int decimals) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(decimals) << value;
   return out.str();
-}
-
-ordered_json timesJson(const StageTime& time) {
-  return {{"median_ms", time.median_ms},
-          {"p95_ms", time.p95_ms},
-          {"p99_ms", time.p99_ms},
-          {"p999_ms", time.p999_ms},
-          {"most_ms", time.most_ms}};
 }
 
 }  // namespace
@@ -138,6 +82,7 @@ std::string RunReport::summary(std::size_t surfels) const {
                   {"frames_over_1_percent", masks.over_1_percent},
                   {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
+  if (color_) out["color"] = colorJson(*color_);
   if (!ran_elsewhere_) out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();
   if (!ran_elsewhere_) out["peak_memory_mb"] = peakMemoryMb();
@@ -223,6 +168,10 @@ std::string RunReport::table() const {
     out << "         " << std::left << std::setw(20) << name << std::right << std::setw(7)
         << fixed(time.median_ms, 1) << " ms median" << std::setw(7) << fixed(time.p95_ms, 1)
         << " ms 95 %" << std::setw(8) << fixed(time.most_ms, 1) << " ms most\n";
+  }
+  if (color_ && color_->doubt.empty()) {
+    out << "colour   was " << fixed(color_->offset_px, 0)
+        << " px off depth: registered, as by a camera with " << describe(color_->camera) << "\n";
   }
   if (loops_.keyframes > 0) {
     out << "loops    " << loops_.keyframes << " keyframes, " << loops_.accepted << " loops, "

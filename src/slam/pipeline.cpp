@@ -10,6 +10,7 @@ namespace pf {
 Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
     : config_(config),
       gate_(config.blur),
+      color_(config.calibration.registersColor()),
       detector_(std::move(detector)),
       segmenter_(config.segmentation, depthSensorOf(config)),
       mapper_(config),
@@ -30,6 +31,7 @@ SeenFrame Pipeline::see(const RgbdFrame& frame) {
   Stopwatch watch;
   seen.frame = rectifier_.rectify(frame);
   seen.blur = gate_.judge(measureSharpness(seen.frame.color), frame.stamp_ns);
+  seen.frame = color_.registered(seen.frame, seen.blur.sharp);
   seen.gate_ms = watch.lapMs();
   seen.people.stamp_ns = frame.stamp_ns;
   if (seen.blur.sharp) seen.people = detector_->detect(seen.frame);

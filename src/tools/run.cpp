@@ -151,6 +151,7 @@ int run(const RunOptions& given) {
   stopOnSignals();
   RunResults results(options, pipeline);
   const auto failure = process(options, *source, pipeline, report, results);
+  report.setColor(pipeline.colorEstimate());
   report.setBackEnd(pipeline.mapper().backEnd(), pipeline.loopCounts());
   report.setVerification(pipeline.loopVerificationMs());
   results.finish(report);

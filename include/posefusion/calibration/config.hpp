@@ -5,13 +5,17 @@
 
 namespace pf {
 
-/// Settings of the depth camera's calibration.
+/// Settings of what is learned of the cameras.
 struct CalibrationConfig {
   /// learn: depth is corrected by what is known, and mapping learns more; frozen: by what is known;
   /// none: it is taken as measured.
   std::string mode = "learn";
+  /// learn: where colour does not lie over depth in the first seconds, it is registered; none: it
+  /// is taken as it comes.
+  std::string color = "learn";
 
   bool learns() const { return mode == "learn"; }
+  bool registersColor() const { return color == "learn"; }
   bool corrects() const { return mode != "none"; }
 };
 
@@ -19,6 +23,10 @@ inline void visitFields(CalibrationConfig& c, FieldVisitor& v) {
   v.choice("mode", c.mode, {"learn", "frozen", "none"},
            "learn: depth is corrected by what is known of the camera, and mapping learns more; "
            "frozen: by what is known; none: it is taken as measured");
+  v.choice(
+      "color", c.color, {"learn", "none"},
+      "learn: colour that does not lie over depth in the first seconds is registered from then "
+      "on; none: it is taken as it comes");
 }
 
 }  // namespace pf

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/color_estimate.hpp"
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/evaluation/map_check.hpp"
@@ -49,6 +50,9 @@ class RunReport {
   void setVerification(const std::vector<double>& times_ms) {
     for (const double ms : times_ms) statistics_.addTime("loop_verification", ms);
   }
+
+  /// How colour lay over depth, if that was looked at.
+  void setColor(const std::optional<ColorEstimate>& estimate) { color_ = estimate; }
 
   /// Reported as `depth_median_difference_m`.
   void setDepthCheck(const DepthCheck& check) { depth_difference_m_ = check.medianM(); }
@@ -101,6 +105,7 @@ class RunReport {
   PeopleStrip strip_;
   PinholeCamera camera_;
   std::optional<double> depth_difference_m_;
+  std::optional<ColorEstimate> color_;
   Stopwatch watch_;
   double seconds_ = 0;
 };

@@ -3,11 +3,13 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "posefusion/blur/gate.hpp"
+#include "posefusion/calibration/color_learner.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/detector.hpp"
 #include "posefusion/robot/robot_recording.hpp"
@@ -48,7 +50,7 @@ class Pipeline {
  public:
   Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector);
 
-  /// Rectification, blur gate, pose detection.
+  /// Rectification, blur gate, registration of colour, pose detection.
   SeenFrame see(const RgbdFrame& frame);
 
   /// Segmentation against the current model, tracking, fusion. A blurred frame is reported as such.
@@ -77,12 +79,16 @@ class Pipeline {
   /// See LoopExchange::verificationMs().
   const std::vector<double>& loopVerificationMs() const { return loop_thread_.verificationMs(); }
 
+  /// How colour lies over depth, once that was looked at. In the thread of see(), or after it.
+  const std::optional<ColorEstimate>& colorEstimate() const { return color_.estimate(); }
+
   const Mapper& mapper() const { return mapper_; }
 
  private:
   Config config_;
   Rectifier rectifier_;
   BlurGate gate_;
+  ColorLearner color_;
   std::unique_ptr<PoseDetector> detector_;
   FlowTracker flow_;
   PeopleSegmenter segmenter_;
