@@ -61,6 +61,42 @@ TEST(CameraFile, SavedFileReadsBackAsTheSame) {
   EXPECT_EQ(loadCamera(folder / "c.yaml").sensor_kind, "active_stereo");
 }
 
+TEST(CameraFile, HasTheColourCameraWhereColourIsNotRegistered) {
+  TemporaryFolder folder;
+  CameraFile file{smallCamera(), 5000.0};
+  saveCamera(folder / "c.yaml", file);
+  EXPECT_FALSE(loadCamera(folder / "c.yaml").color.has_value());
+  file.color = ColorCamera{526.5, 527.5, 319, 240, -0.025};
+  saveCamera(folder / "c.yaml", file);
+  const auto color = loadCamera(folder / "c.yaml").color;
+  ASSERT_TRUE(color.has_value());
+  EXPECT_EQ(color->fx, 526.5);
+  EXPECT_EQ(color->fy, 527.5);
+  EXPECT_EQ(color->cx, 319);
+  EXPECT_EQ(color->cy, 240);
+  EXPECT_EQ(color->depth_right_m, -0.025);
+}
+
+TEST(CameraFile, AColourCameraThatCannotBeIsNamed) {
+  TemporaryFolder folder;
+  const auto said = [&](const std::string& color) -> std::string {
+    const auto path = folder.write(
+        "c.yaml", "width: 640\nheight: 480\nfx: 300\nfy: 300\ncx: 320\ncy: 240\n" + color);
+    try {
+      loadCamera(path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_NE(said("color_fx: 300\n").find("color_fy is missing"), std::string::npos);
+  const std::string rest = "color_fy: 300\ncolor_cx: 320\ncolor_cy: 240\n";
+  EXPECT_NE(said("color_fx: -1\n" + rest).find("focal length of colour is -1"), std::string::npos);
+  EXPECT_NE(said("color_fx: 300\ncolor_depth_right_m: 25\n" + rest).find("expected metres"),
+            std::string::npos);
+  EXPECT_NE(said("color_fx: many\n" + rest).find("color_fx is no number"), std::string::npos);
+}
+
 TEST(CameraFile, TheLensModelDefinesTheCoefficients) {
   TemporaryFolder folder;
   const auto load = [&](const std::string& lens) {

@@ -150,6 +150,8 @@ TEST(ColorEstimate, AWallSaysNothing) {
             "0 views have steps of depth, expected 16 or more");
 }
 
+const CalibrationConfig kLearns{"learn", "learn"};
+
 /// Frames of one camera; what the learner makes of them.
 std::vector<cv::Mat> learned(ColorLearner& learner, const ColorCamera& color, int frames) {
   std::vector<cv::Mat> pictures;
@@ -163,7 +165,7 @@ std::vector<cv::Mat> learned(ColorLearner& learner, const ColorCamera& color, in
 }
 
 TEST(ColorLearner, RegistersFromAFrameOnThatTimeDoesNotDecide) {
-  ColorLearner a(true), b(true);
+  ColorLearner a(kLearns), b(kLearns);
   const auto first = learned(a, kBeside, 45), second = learned(b, kBeside, 45);
   EXPECT_TRUE(first[34].empty());
   ASSERT_FALSE(first[36].empty());
@@ -176,16 +178,29 @@ TEST(ColorLearner, RegistersFromAFrameOnThatTimeDoesNotDecide) {
 }
 
 TEST(ColorLearner, LeavesWhatIsRegisteredAndWhatItShallNotTouch) {
-  ColorLearner learner(true), off(false);
+  ColorLearner learner(kLearns), tells(CalibrationConfig{}),
+      off(CalibrationConfig{"learn", "none"});
   for (const cv::Mat& picture : learned(learner, registeredTo(kDepthCamera), 45)) {
     EXPECT_TRUE(picture.empty());
   }
   EXPECT_TRUE(learner.estimate().has_value());
+  for (const cv::Mat& picture : learned(tells, kBeside, 45)) EXPECT_TRUE(picture.empty());
+  EXPECT_EQ(tells.estimate()->doubt, "");
   for (const cv::Mat& picture : learned(off, kBeside, 45)) EXPECT_TRUE(picture.empty());
+  EXPECT_FALSE(off.estimate().has_value());
+}
+
+TEST(ColorLearner, UsesWhatItIsGivenFromTheFirstFrameOn) {
+  ColorLearner learner;
+  learner.give(kBeside);
+  const RgbdFrame frame = frameOf(Boards(3), kBeside);
+  const cv::Mat expected = ColorRegistration(kBeside).registered(frame).color;
+  EXPECT_EQ(cv::norm(learner.registered(frame, false).color, expected, cv::NORM_INF), 0.0);
+  EXPECT_FALSE(learner.estimate().has_value());
 }
 
 TEST(ColorLearner, BeginsAnewWithAnotherCamera) {
-  ColorLearner learner(true);
+  ColorLearner learner(kLearns);
   learned(learner, kBeside, 40);
   ASSERT_TRUE(learner.estimate().has_value());
   RgbdFrame other = frameOf(Boards(1), kBeside, 5'000'000'000LL);
@@ -198,7 +213,7 @@ TEST(ColorEstimate, KnowsTheKinectOfARealRecording) {
   const std::string folder = testData("kitchen_static");
   POSEFUSION_REQUIRE_DATA(folder);
   const auto source = openTumFolder(folder);
-  ColorLearner learner(true);
+  ColorLearner learner(kLearns);
   while (auto next = source->next()) {
     learner.registered(next->frame, true);
     if (learner.estimate()) break;

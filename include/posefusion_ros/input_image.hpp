@@ -6,8 +6,10 @@
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
+#include <optional>
 #include <variant>
 
+#include "posefusion/calibration/color_camera.hpp"
 #include "posefusion/core/frame.hpp"
 
 namespace posefusion_ros {
@@ -39,6 +41,8 @@ struct InputCamera {
   sensor_msgs::CameraInfoConstPtr depth_info;
   bool rectified = false;      ///< see toCamera()
   double depth_unit_m = 1e-3;  ///< of 16-bit depth
+  /// What takes colour that is not registered to depth.
+  std::optional<pf::ColorCamera> beside{};
 };
 
 /// A frame with one size, whose pixels are those of the messages wherever encodings and sizes

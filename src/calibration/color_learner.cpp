@@ -18,9 +18,10 @@ constexpr std::int64_t kWork_ns = 700'000'000;
 }  // namespace
 
 RgbdFrame ColorLearner::registered(const RgbdFrame& frame, bool sharp) {
-  if (!learns_) return frame;
+  if (registration_ && !estimate_) return registration_->registered(frame);  // given
+  if (!config_.looksAtColor()) return frame;
   if (camera_ != frame.camera) {
-    *this = ColorLearner(learns_);
+    *this = ColorLearner(config_);
     camera_ = frame.camera;
   }
   takeUp(frame.stamp_ns);
@@ -42,7 +43,8 @@ void ColorLearner::learn(const RgbdFrame& frame) {
 void ColorLearner::takeUp(std::int64_t stamp_ns) {
   if (!working_.valid() || std::abs(stamp_ns - last_ns_) < kWork_ns) return;
   estimate_ = working_.get();
-  if (estimate_->doubt.empty()) registration_.emplace(estimate_->camera);
+  if (!estimate_->doubt.empty() || !config_.registersColor()) return;
+  registration_.emplace(estimate_->camera);
 }
 
 }  // namespace pf

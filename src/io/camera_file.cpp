@@ -17,6 +17,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+constexpr double kMostBeside_m = 1.0;  // of two cameras in one housing
+
 const Names kPolynomialNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
 const Names kEquidistantNames = {"k1", "k2", "k3", "k4"};
 
@@ -120,6 +122,23 @@ std::string readSensorKind(const CameraReader& reader, const std::string& path) 
   throw InputError(path + ": sensor is '" + *kind + "', expected one of " + expected);
 }
 
+std::optional<ColorCamera> readColorCamera(const CameraReader& reader, const std::string& path) {
+  if (!reader.find({"color_fx"})) return std::nullopt;
+  ColorCamera color{reader.require({"color_fx"}), reader.require({"color_fy"}),
+                    reader.require({"color_cx"}), reader.require({"color_cy"}),
+                    reader.find({"color_depth_right_m"}).value_or(0.0)};
+  for (const double f : {color.fx, color.fy}) {
+    if (f > 0 && std::isfinite(f)) continue;
+    throw InputError(path + ": the focal length of colour is " + std::to_string(f) +
+                     ", expected pixels, above 0");
+  }
+  if (!(std::abs(color.depth_right_m) <= kMostBeside_m) || !std::isfinite(color.cx + color.cy)) {
+    throw InputError(path + ": color_depth_right_m is " + std::to_string(color.depth_right_m) +
+                     ", expected metres, 1 at most, and a finite centre");
+  }
+  return color;
+}
+
 }  // namespace
 
 CameraFile loadCamera(const std::string& path) {
@@ -139,6 +158,7 @@ CameraFile loadCamera(const std::string& path) {
                      ", expected steps of the depth in a metre, above 0");
   }
   file.sensor_kind = readSensorKind(reader, path);
+  file.color = readColorCamera(reader, path);
   try {
     validate(camera);
   } catch (const InputError& error) {
@@ -158,6 +178,12 @@ void saveCamera(const std::string& path, const CameraFile& file) {
     out.stream() << coefficientNames(c.lens)[i] << ": " << c.distortion[i] << "\n";
   }
   if (file.depth_factor) out.stream() << "depth_factor: " << *file.depth_factor << "\n";
+  if (file.color) {
+    const ColorCamera& color = *file.color;
+    out.stream() << "color_fx: " << color.fx << "\ncolor_fy: " << color.fy
+                 << "\ncolor_cx: " << color.cx << "\ncolor_cy: " << color.cy
+                 << "\ncolor_depth_right_m: " << color.depth_right_m << "\n";
+  }
   if (!file.sensor_kind.empty()) out.stream() << "sensor: " << file.sensor_kind << "\n";
   out.commit();
 }

@@ -153,6 +153,7 @@ class TumFolder : public FrameSource {
   }
 
   std::string sensorKind() const override { return sensor_kind_; }
+  std::optional<ColorCamera> colorCamera() override { return color_camera_; }
 
   InputReport report() const override { return report_; }
 
@@ -183,6 +184,7 @@ class TumFolder : public FrameSource {
     }
     camera_ = file.camera;
     sensor_kind_ = file.sensor_kind;
+    color_camera_ = file.color;
     depth_unit_m_ = 1.0 / *file.depth_factor;
   }
 
@@ -213,6 +215,7 @@ class TumFolder : public FrameSource {
   PinholeCamera camera_;
   double depth_unit_m_ = 1e-3;
   std::string sensor_kind_;
+  std::optional<ColorCamera> color_camera_;
   InputReport report_;
 };
 

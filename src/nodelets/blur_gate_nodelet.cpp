@@ -10,6 +10,7 @@
 #include "posefusion/blur/gate.hpp"
 #include "posefusion/calibration/color_learner.hpp"
 #include "posefusion/core/error.hpp"
+#include "posefusion/io/camera_file.hpp"
 #include "posefusion_ros/camera_topics.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/clock_watch.hpp"
@@ -35,7 +36,7 @@ class BlurGateNodelet : public ChainNodelet {
     Parameters parameters(getPrivateNodeHandle());
     const pf::Config config = parameters.config({"blur", "calibration"});
     config_ = config.blur;
-    color_ = pf::ColorLearner(config.calibration.registersColor());
+    readColor(config.calibration, parameters.text("color_camera_file", ""));
     input_ = readInput(parameters);
     missing_after_s_ = parameters.number("missing_after_s", 5.0, {0.1, 1e6});
     report(parameters);
@@ -99,16 +100,25 @@ class BlurGateNodelet : public ChainNodelet {
     pass(registered(straight), set);
   }
 
-  /// Colour lies over depth from the frame on that the camera is known at.
+  void readColor(const pf::CalibrationConfig& config, const std::string& file) {
+    color_ = pf::ColorLearner(config);
+    registers_color_ = config.registersColor();
+    if (file.empty()) return;
+    const auto color = pf::loadCamera(file).color;
+    if (!color) throw pf::InputError(file + ": color_fx is missing, expected the colour camera");
+    color_.give(*color);
+  }
+
+  /// With colour that lies over depth, as far as its camera is known.
   pf::RgbdFrame registered(const pf::RgbdFrame& frame) {
     const bool was_known = color_.estimate().has_value();
     pf::RgbdFrame out = color_.registered(frame, true);
-    if (!was_known && color_.estimate() && color_.estimate()->doubt.empty()) {
-      NODELET_WARN(
-          "colour is not registered to depth, %.0f px off: it is registered from now on, as by a "
-          "camera "
-          "with %s",
-          color_.estimate()->offset_px, pf::describe(color_.estimate()->camera).c_str());
+    const auto& found = color_.estimate();
+    if (!was_known && found && found->doubt.empty()) {
+      NODELET_WARN("colour is %.0f px off depth, as of a camera with %s; %s", found->offset_px,
+                   pf::describe(found->camera).c_str(),
+                   registers_color_ ? "it is registered from now on"
+                                    : "calibration/color:=learn registers it");
     }
     return out;
   }
@@ -196,7 +206,8 @@ class BlurGateNodelet : public ChainNodelet {
   std::string clock_defect_;  ///< of the last frame
   GrowingPause missing_pause_, clock_pause_;
   pf::Rectifier rectifier_;
-  pf::ColorLearner color_{false};
+  pf::ColorLearner color_;
+  bool registers_color_ = false;
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;

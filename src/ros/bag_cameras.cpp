@@ -39,8 +39,13 @@ InputCamera recordedCamera(rosbag::Bag& bag, const BagTopics& topics,
                            const std::string& camera_file) {
   InputCamera camera;
   camera.rectified = topics.color.find("rect") != std::string::npos;
-  camera.color = camera_file.empty() ? colorCamera(bag, topics, camera.rectified)
-                                     : pf::loadCamera(camera_file).camera;
+  if (camera_file.empty()) {
+    camera.color = colorCamera(bag, topics, camera.rectified);
+  } else {
+    const pf::CameraFile file = pf::loadCamera(camera_file);
+    camera.color = file.camera;
+    camera.beside = file.color;
+  }
   camera.depth_info = firstInfo(bag, topics.depth_camera_info);
   return camera;
 }

@@ -103,6 +103,7 @@ class BagSource : public pf::FrameSource {
     return recorded;
   }
 
+  std::optional<pf::ColorCamera> colorCamera() override { return camera_.beside; }
   pf::Trajectory truth() override {
     pf::Trajectory truth;
     forEach<geometry_msgs::PoseStamped>(topics_.truth, [&](const auto& message) {

@@ -69,6 +69,7 @@ Config configFor(Config config, const FrameSource& source) {
 }
 
 void runPipeline(FrameSource& source, Pipeline& pipeline, const FrameDone& done) {
+  if (const auto color = source.colorCamera()) pipeline.registerColor(*color);
   Handover<SourceFrame> read;
   Handover<SeenSource> seen;
   std::atomic<bool> stop{false};

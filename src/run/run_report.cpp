@@ -82,7 +82,7 @@ std::string RunReport::summary(std::size_t surfels) const {
                   {"frames_over_1_percent", masks.over_1_percent},
                   {"mean_part", masks.mean_part}};
   out["surfels"] = surfels;
-  if (color_) out["color"] = colorJson(*color_);
+  if (color_) out["color"] = colorJson(*color_, config_.calibration.registersColor());
   if (!ran_elsewhere_) out["loops"] = loopsJson(loops_, corrections_);
   out["frames_per_second"] = framesPerSecond();
   if (!ran_elsewhere_) out["peak_memory_mb"] = peakMemoryMb();
@@ -169,10 +169,7 @@ std::string RunReport::table() const {
         << fixed(time.median_ms, 1) << " ms median" << std::setw(7) << fixed(time.p95_ms, 1)
         << " ms 95 %" << std::setw(8) << fixed(time.most_ms, 1) << " ms most\n";
   }
-  if (color_ && color_->doubt.empty()) {
-    out << "colour   was " << fixed(color_->offset_px, 0)
-        << " px off depth: registered, as by a camera with " << describe(color_->camera) << "\n";
-  }
+  if (color_) out << colorLine(*color_, config_.calibration.registersColor());
   if (loops_.keyframes > 0) {
     out << "loops    " << loops_.keyframes << " keyframes, " << loops_.accepted << " loops, "
         << corrections_.accepted << " corrections; " << loops_.found << " of " << loops_.searched

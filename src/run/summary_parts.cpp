@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "summary_parts.hpp"
 
+#include <cstdio>
 #include <string>
 
 namespace pf {
@@ -53,15 +54,34 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
           {"places_found", c.found}};
 }
 
-ordered_json colorJson(const ColorEstimate& e) {
-  ordered_json out = {{"registered_by_us", e.doubt.empty()},
+ordered_json colorJson(const ColorEstimate& e, bool registers) {
+  ordered_json out = {{"lies_over_depth", !e.doubt.empty()},
                       {"offset_px", e.offset_px},
                       {"offset_known_to_px", e.unknown_px}};
   if (!e.doubt.empty()) return out;
   const ColorCamera& c = e.camera;
-  out["color_camera"] = {
-      {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}, {"depth_right_m", c.depth_right_m}};
+  out["registered"] = registers;
+  out["color_fx"] = c.fx;
+  out["color_fy"] = c.fy;
+  out["color_cx"] = c.cx;
+  out["color_cy"] = c.cy;
+  out["color_depth_right_m"] = c.depth_right_m;
   return out;
+}
+
+std::string colorLine(const ColorEstimate& e, bool registers) {
+  if (!e.doubt.empty()) return {};
+  const ColorCamera& c = e.camera;
+  char text[400];
+  std::snprintf(text, sizeof(text),
+                "colour   %s %.0f px off depth%s. In camera.yaml, for the next run:\n"
+                "           color_fx: %.2f\n           color_fy: %.2f\n           color_cx: %.2f\n"
+                "           color_cy: %.2f\n           color_depth_right_m: %.5f\n",
+                registers ? "was" : "is", e.offset_px,
+                registers ? ", registered from the first seconds on"
+                          : ": --set calibration.color=learn registers it",
+                c.fx, c.fy, c.cx, c.cy, c.depth_right_m);
+  return text;
 }
 
 ordered_json timesJson(const StageTime& time) {

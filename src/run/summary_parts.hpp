@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "posefusion/calibration/color_estimate.hpp"
 #include "posefusion/loop/closer.hpp"
@@ -21,8 +22,11 @@ nlohmann::ordered_json framesJson(const FrameCounts& f);
 /// Table IV of the paper counts ferns and loops.
 nlohmann::ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections);
 
-/// How colour lay over depth; the colour camera only where it is used.
-nlohmann::ordered_json colorJson(const ColorEstimate& e);
+/// How colour lay over depth; the colour camera where it does not.
+nlohmann::ordered_json colorJson(const ColorEstimate& e, bool registers);
+
+/// The same for people, with what to write into camera.yaml; empty where it does.
+std::string colorLine(const ColorEstimate& e, bool registers);
 
 nlohmann::ordered_json timesJson(const StageTime& time);
 

@@ -10,7 +10,7 @@ namespace pf {
 Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
     : config_(config),
       gate_(config.blur),
-      color_(config.calibration.registersColor()),
+      color_(config.calibration),
       detector_(std::move(detector)),
       segmenter_(config.segmentation, depthSensorOf(config)),
       mapper_(config),

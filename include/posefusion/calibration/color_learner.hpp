@@ -8,15 +8,19 @@
 
 #include "posefusion/calibration/color_estimate.hpp"
 #include "posefusion/calibration/color_registration.hpp"
+#include "posefusion/calibration/config.hpp"
 
 namespace pf {
 
-/// Finds out in the first seconds whether colour lies over depth, and registers it where it does
+/// Finds out in the first second whether colour lies over depth, and registers it where it does
 /// not. The same frames give the same bytes: the estimate is worked out in a thread of its own, and
 /// taken up at a frame that its time does not decide. Not thread safe.
 class ColorLearner {
  public:
-  explicit ColorLearner(bool learns) : learns_(learns) {}
+  explicit ColorLearner(const CalibrationConfig& config = {}) : config_(config) {}
+
+  /// Before the first frame: the colour camera is known, and nothing is to be learned.
+  void give(const ColorCamera& camera) { registration_.emplace(camera); }
 
   /// The frame with colour registered to depth, as far as it is known: the same pixels where
   /// nothing is known, or nothing is wrong. `frame`: without lens distortion; frames that are not
@@ -30,7 +34,7 @@ class ColorLearner {
   void learn(const RgbdFrame& frame);
   void takeUp(std::int64_t stamp_ns);
 
-  bool learns_;
+  CalibrationConfig config_;
   PinholeCamera camera_;
   std::vector<EdgeView> views_;
   std::int64_t last_ns_ = 0;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "posefusion/calibration/color_camera.hpp"
 #include "posefusion/core/frame.hpp"
 #include "posefusion/core/trajectory.hpp"
 #include "posefusion/pose/detector.hpp"
@@ -47,6 +48,9 @@ class FrameSource {
   /// The kind of depth camera that it says it was taken by, one of sensorKinds(); empty: it does
   /// not say.
   virtual std::string sensorKind() const { return {}; }
+
+  /// The camera of its colour images, where they are not registered to depth.
+  virtual std::optional<ColorCamera> colorCamera() { return std::nullopt; }
 
   virtual InputReport report() const { return {}; }
 };

@@ -64,6 +64,9 @@ class Pipeline {
   /// Before load() and the first frame; see Mapper::calibrate().
   void calibrate(const DepthCalibration& calibration) { mapper_.calibrate(calibration); }
 
+  /// Before the first frame: the camera of colour that is not registered to depth.
+  void registerColor(const ColorCamera& camera) { color_.give(camera); }
+
   /// Before the first frame: the measurements of the robot's other sensors during the recording.
   void accompany(RobotRecording recording) { robot_ = RobotPlayback(std::move(recording)); }
 
