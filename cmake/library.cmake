@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 # What a program outside needs, and what these include; the other headers may change at any time.
 set(POSEFUSION_HEADERS
-  blur/config.hpp calibration/config.hpp config/fields.hpp core/camera.hpp core/depth_sensor.hpp core/error.hpp
+  blur/config.hpp calibration/color_camera.hpp calibration/config.hpp config/fields.hpp core/camera.hpp core/depth_sensor.hpp core/error.hpp
   core/frame.hpp core/map_pose.hpp core/trajectory.hpp frame/config.hpp frame/sensor_config.hpp
   graph/config.hpp io/frame_source.hpp io/trajectory_file.hpp loop/config.hpp map/config.hpp map/surfels.hpp
   pose/config.hpp pose/detector.hpp pose/skeleton.hpp robot/config.hpp run/slam.hpp segmentation/config.hpp slam/config.hpp
