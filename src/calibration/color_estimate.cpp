@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
+#include <iterator>
+#include <utility>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -14,13 +15,14 @@ namespace {
 
 constexpr std::size_t kLeastSteps = 50;
 constexpr std::size_t kLeastViews = 8;  // that judge or are learned from
-// Where the search begins, and how far apart: zoom, shift right and down (parts of the width).
-constexpr double kMostZoom = 0.14, kZoomStep = 0.02;
-constexpr double kMostShift = 0.04, kShiftStep = 0.00625;
+// Where the search begins: zoom by so many steps, shift right and down (parts of the width). It
+// ends within twice that.
+constexpr int kZooms = 7, kShifts = 6;
+constexpr double kZoomStep = 0.02, kShiftStep = 0.00625;
 constexpr std::size_t kCoarse = 16;  // one step in so many tells where
 constexpr double kFinest_px = 0.1;
 // As for the field of depth: one chance in a thousand, and three times what it is known to.
-constexpr double kSignificant = 3.1, kKnown = 3.0;
+constexpr double kSureGain = 3.1, kKnown = 3.0;
 // At steps of depth colour is as much of an edge as elsewhere where the two have nothing to do with
 // each other (1.04), and 1.4 times as much or more where they do.
 constexpr double kLeastContrast = 1.2, kAround = 0.025;  // of the width
@@ -37,17 +39,22 @@ ColorCamera cameraOf(const Offsets& o, const PinholeCamera& depth) {
           depth.cy + o[2] * depth.width, o[3] * depth.width / (zoom * depth.fx)};
 }
 
+bool isBeyond(const Offsets& o) {
+  return std::abs(o[0]) > 2 * kZooms * kZoomStep ||
+         std::any_of(o.begin() + 1, o.end(),
+                     [](double shift) { return std::abs(shift) > 2 * kShifts * kShiftStep; });
+}
+
 /// Mean strength at the steps of a view, 0 to 255; one that is outside counts as any pixel.
 double strengthAt(const EdgeView& view, const PinholeCamera& depth, const ColorCamera& camera,
                   std::size_t every) {
-  const double mean = 64.0;  // of all pixels, as strength is scaled by it
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < view.size(); i += every, ++count) {
     const Eigen::Vector2d p = camera.pixel(depth, view.x[i], view.y[i], view.inverse[i]);
     const int u = static_cast<int>(std::floor(p.x())), v = static_cast<int>(std::floor(p.y()));
     if (u < 0 || v < 0 || u + 1 >= view.strength.cols || v + 1 >= view.strength.rows) {
-      sum += mean;
+      sum += view.mean_strength;
       continue;
     }
     const double a = p.x() - u, b = p.y() - v;
@@ -55,15 +62,14 @@ double strengthAt(const EdgeView& view, const PinholeCamera& depth, const ColorC
                *lower = view.strength.ptr<std::uint8_t>(v + 1) + u;
     sum += (1 - b) * ((1 - a) * upper[0] + a * upper[1]) + b * ((1 - a) * lower[0] + a * lower[1]);
   }
-  return count > 0 ? sum / static_cast<double>(count) : mean;
+  return count > 0 ? sum / static_cast<double>(count) : view.mean_strength;
 }
 
-/// Views, every so many of them or the others.
-std::vector<const EdgeView*> part(const std::vector<EdgeView>& views, std::optional<bool> odd) {
+/// From view `begin` to before `end`.
+std::vector<const EdgeView*> part(const std::vector<EdgeView>& views, std::size_t begin,
+                                  std::size_t end) {
   std::vector<const EdgeView*> some;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!odd || (i % 2 == 1) == *odd) some.push_back(&views[i]);
-  }
+  for (std::size_t i = begin; i < end; ++i) some.push_back(&views[i]);
   return some;
 }
 
@@ -73,9 +79,8 @@ class OffsetSearch {
   OffsetSearch(std::vector<const EdgeView*> views, const PinholeCamera& depth)
       : views_(std::move(views)), depth_(depth) {}
 
-  Offsets find() const { return refined(coarse()); }
-
-  Offsets refined(Offsets best) const {
+  Offsets find() const {
+    Offsets best = coarse();
     Offsets step = {kZoomStep, kShiftStep, kShiftStep, kShiftStep};
     double most = score(best, 1);
     while (step[1] * depth_.width > kFinest_px) {
@@ -96,10 +101,10 @@ class OffsetSearch {
 
   Offsets coarse() const {
     std::vector<Offsets> all;
-    for (double zoom = -kMostZoom; zoom < kMostZoom + 1e-9; zoom += kZoomStep) {
-      for (double right = -kMostShift; right < kMostShift + 1e-9; right += kShiftStep) {
-        for (double down = -kMostShift; down < kMostShift + 1e-9; down += kShiftStep) {
-          all.push_back({zoom, right, down, 0.0});
+    for (int zoom = -kZooms; zoom <= kZooms; ++zoom) {
+      for (int right = -kShifts; right <= kShifts; ++right) {
+        for (int down = -kShifts; down <= kShifts; ++down) {
+          all.push_back({zoom * kZoomStep, right * kShiftStep, down * kShiftStep, 0.0});
         }
       }
     }
@@ -123,12 +128,13 @@ class OffsetSearch {
       tried.back()[1] += sign * step[1];
       tried.back()[3] -= 2.0 * sign * step[3];
     }
+    tried.erase(std::remove_if(tried.begin(), tried.end(), isBeyond), tried.end());
     std::vector<double> scores(tried.size());
     parallelFor(tried.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) scores[i] = score(tried[i], 1);
     });
     const auto top = std::max_element(scores.begin(), scores.end());
-    if (!(*top > most)) return false;
+    if (top == scores.end() || !(*top > most)) return false;
     most = *top;
     best = tried[static_cast<std::size_t>(top - scores.begin())];
     return true;
@@ -153,8 +159,8 @@ double apart(const std::vector<EdgeView>& views, const PinholeCamera& depth, con
 }
 
 /// The gain of `camera` in views that it was not learned from, over its standard error.
-double significanceOf(const std::vector<const EdgeView*>& views, const PinholeCamera& depth,
-                      const ColorCamera& camera) {
+double gainOf(const std::vector<const EdgeView*>& views, const PinholeCamera& depth,
+              const ColorCamera& camera) {
   double sum = 0, squares = 0;
   for (const EdgeView* view : views) {
     const double gain =
@@ -185,17 +191,17 @@ double contrastOf(const std::vector<EdgeView>& views, const PinholeCamera& depth
 
 std::string doubtOf(const ColorEstimate& e, const PinholeCamera& depth) {
   char text[160];
-  if (e.offset_px < kWorth * depth.width) {
-    std::snprintf(text, sizeof(text), "colour lies over depth to %.1f px", e.offset_px);
-  } else if (e.contrast < kLeastContrast) {
+  if (e.contrast < kLeastContrast) {
     std::snprintf(text, sizeof(text),
                   "steps of depth are %.2f times as much of an edge as what is around them, "
                   "expected %.2f or more",
                   e.contrast, kLeastContrast);
-  } else if (e.significance < kSignificant) {
+  } else if (e.offset_px < kWorth * depth.width) {
+    std::snprintf(text, sizeof(text), "colour lies over depth to %.1f px", e.offset_px);
+  } else if (e.significance < kSureGain) {
     std::snprintf(text, sizeof(text),
                   "views that were kept out gain %.1f standard errors, expected %.1f or more",
-                  e.significance, kSignificant);
+                  e.significance, kSureGain);
   } else if (e.offset_px < kKnown * e.unknown_px) {
     std::snprintf(text, sizeof(text), "the offset of %.1f px is known to %.1f px only", e.offset_px,
                   e.unknown_px);
@@ -218,15 +224,15 @@ ColorEstimate estimateColorCamera(const std::vector<EdgeView>& views, const Pinh
                      std::to_string(2 * kLeastViews) + " or more";
     return estimate;
   }
-  const std::vector<const EdgeView*> odd = part(used, true), even = part(used, false);
-  const Offsets best = OffsetSearch(part(used, std::nullopt), depth).find();
-  const ColorCamera by_odd = cameraOf(OffsetSearch(odd, depth).refined(best), depth);
-  const ColorCamera by_even = cameraOf(OffsetSearch(even, depth).refined(best), depth);
-  estimate.camera = cameraOf(best, depth);
+  const std::size_t half = used.size() / 2;
+  const auto first = part(used, 0, half), second = part(used, half, used.size());
+  const ColorCamera by_first = cameraOf(OffsetSearch(first, depth).find(), depth);
+  const ColorCamera by_second = cameraOf(OffsetSearch(second, depth).find(), depth);
+  estimate.camera = cameraOf(OffsetSearch(part(used, 0, used.size()), depth).find(), depth);
   estimate.offset_px = apart(used, depth, estimate.camera, registeredTo(depth));
-  estimate.unknown_px = 0.5 * apart(used, depth, by_odd, by_even);
+  estimate.unknown_px = 0.5 * apart(used, depth, by_first, by_second);
   estimate.significance =
-      std::min(significanceOf(odd, depth, by_even), significanceOf(even, depth, by_odd));
+      std::min(gainOf(first, depth, by_second), gainOf(second, depth, by_first));
   estimate.contrast = contrastOf(used, depth, estimate.camera);
   estimate.doubt = doubtOf(estimate, depth);
   return estimate;

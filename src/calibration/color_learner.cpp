@@ -12,15 +12,15 @@ namespace {
 // Of 30 frames a second every other one: frames that follow each other show the same edges.
 constexpr std::int64_t kApart_ns = 50'000'000;
 constexpr std::size_t kViews = 24;
-// The estimate takes a quarter of a second of one core.
-constexpr std::int64_t kWork_ns = 700'000'000;
+// The estimate takes half a second of one core.
+constexpr std::int64_t kWork_ns = 1'000'000'000;
 
 }  // namespace
 
 RgbdFrame ColorLearner::registered(const RgbdFrame& frame, bool sharp) {
   if (registration_ && !estimate_) return registration_->registered(frame);  // given
   if (!config_.looksAtColor()) return frame;
-  if (camera_ != frame.camera) {
+  if (!isSameCamera(camera_, frame.camera)) {
     *this = ColorLearner(config_);
     camera_ = frame.camera;
   }

@@ -2,6 +2,7 @@
 #include "posefusion/calibration/color_registration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -11,8 +12,8 @@
 namespace pf {
 namespace {
 
-constexpr double kAnyDepth_m = 1e3;
-constexpr double kHidden_px = 0.5;  // behind the edge of something nearer
+constexpr double kNearest_m = 0.1, kAnyDepth_m = 1e3;
+constexpr double kHidden = 0.5;  // of a pixel of depth, behind the edge of something nearer
 
 /// Inverse depth (1/m) from depth (m); a gap has the smaller of those at its ends.
 void fillRow(const float* depth_m, int width, float* inverse) {
@@ -31,16 +32,26 @@ void fillRow(const float* depth_m, int width, float* inverse) {
   }
 }
 
+/// A single pixel of wrong depth would hide what is beside it: the median of three (1/m).
+void takeOutSpeckles(int width, float* inverse) {
+  float before = inverse[0];
+  for (int u = 1; u + 1 < width; ++u) {
+    const float here = inverse[u], after = inverse[u + 1];
+    inverse[u] = std::max(std::min(before, here), std::min(std::max(before, here), after));
+    before = here;
+  }
+}
+
 /// `x`: where the pixels of a row are seen in the colour image, by place. Nearer things are shifted
 /// to one side and hide what lies there: it takes the place beside them.
-void clearHidden(double shift_px_m, int width, float* x) {
+void clearHidden(double zoom, double shift_px_m, int width, float* x) {
   if (shift_px_m == 0) return;
   const bool to_left = shift_px_m < 0;
   const int step = to_left ? -1 : 1;
   float edge = to_left ? x[width - 1] : x[0];
   for (int u = to_left ? width - 2 : 1; u >= 0 && u < width; u += step) {
     const float behind = to_left ? x[u] - edge : edge - x[u];
-    if (behind > static_cast<float>(-kHidden_px)) {
+    if (behind > static_cast<float>(-kHidden * zoom)) {
       x[u] = edge + static_cast<float>(step);
     } else {
       edge = x[u];
@@ -60,7 +71,7 @@ std::string describe(const ColorCamera& c) {
 }
 
 RgbdFrame ColorRegistration::registered(const RgbdFrame& frame) {
-  depthInMetres(frame, 0.0, kAnyDepth_m, depth_m_);
+  depthInMetres(frame, kNearest_m, kAnyDepth_m, depth_m_);
   x_.create(depth_m_.size(), CV_32FC1);
   y_.create(depth_m_.size(), CV_32FC1);
   const PinholeCamera& depth = frame.camera;
@@ -72,10 +83,11 @@ RgbdFrame ColorRegistration::registered(const RgbdFrame& frame) {
                 for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
                   auto* x = x_.ptr<float>(v);
                   fillRow(depth_m_.ptr<float>(v), x_.cols, x);
+                  takeOutSpeckles(x_.cols, x);
                   for (int u = 0; u < x_.cols; ++u) {
                     x[u] = from + zoom * static_cast<float>(u) + shift_px_m * x[u];
                   }
-                  clearHidden(shift_px_m, x_.cols, x);
+                  clearHidden(zoom, shift_px_m, x_.cols, x);
                   y_.row(v).setTo(camera_.pixel(depth, 0, v, 0).y());
                 }
               });

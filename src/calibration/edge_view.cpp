@@ -31,7 +31,7 @@ void addStepsOfRow(const cv::Mat& depth_m, int v, EdgeView& view) {
   }
 }
 
-/// The slope of the grey levels, so that its mean is a quarter and it never exceeds one.
+/// The slope of the grey levels: a quarter at its mean, and never more than one.
 cv::Mat strengthOf(const cv::Mat& color) {
   cv::Mat grey, right, down, slope, strength;
   cv::cvtColor(color, grey, cv::COLOR_RGB2GRAY);
@@ -61,6 +61,7 @@ EdgeView edgeView(const RgbdFrame& frame) {
     view.inverse.push_back(all.inverse[k]);
   }
   view.strength = strengthOf(frame.color);
+  view.mean_strength = cv::mean(view.strength)[0];
   return view;
 }
 

@@ -132,9 +132,13 @@ std::optional<ColorCamera> readColorCamera(const CameraReader& reader, const std
     throw InputError(path + ": the focal length of colour is " + std::to_string(f) +
                      ", expected pixels, above 0");
   }
-  if (!(std::abs(color.depth_right_m) <= kMostBeside_m) || !std::isfinite(color.cx + color.cy)) {
+  if (!std::isfinite(color.cx) || !std::isfinite(color.cy)) {
+    throw InputError(path + ": color_cx, color_cy are " + std::to_string(color.cx) + ", " +
+                     std::to_string(color.cy) + ", expected pixels");
+  }
+  if (!(std::abs(color.depth_right_m) <= kMostBeside_m)) {
     throw InputError(path + ": color_depth_right_m is " + std::to_string(color.depth_right_m) +
-                     ", expected metres, 1 at most, and a finite centre");
+                     ", expected metres, 1 at most");
   }
   return color;
 }

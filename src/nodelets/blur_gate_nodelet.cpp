@@ -104,13 +104,22 @@ class BlurGateNodelet : public ChainNodelet {
     color_ = pf::ColorLearner(config);
     registers_color_ = config.registersColor();
     if (file.empty()) return;
-    const auto color = pf::loadCamera(file).color;
-    if (!color) throw pf::InputError(file + ": color_fx is missing, expected the colour camera");
-    color_.give(*color);
+    const pf::CameraFile camera = pf::loadCamera(file);
+    if (!camera.color) {
+      throw pf::InputError(file + ": color_fx is missing, expected the colour camera");
+    }
+    color_.give(*camera.color);
+    depth_camera_ = camera.camera.withoutDistortion();
+    color_file_ = file;
   }
 
   /// With colour that lies over depth, as far as its camera is known.
   pf::RgbdFrame registered(const pf::RgbdFrame& frame) {
+    if (depth_camera_ && !pf::isSameCamera(*depth_camera_, frame.camera)) {
+      throw pf::InputError(color_file_ + ": is of depth by a camera of " +
+                           pf::describe(*depth_camera_) + ", but the frame is by one of " +
+                           pf::describe(frame.camera));
+    }
     const bool was_known = color_.estimate().has_value();
     pf::RgbdFrame out = color_.registered(frame, true);
     const auto& found = color_.estimate();
@@ -118,7 +127,7 @@ class BlurGateNodelet : public ChainNodelet {
       NODELET_WARN("colour is %.0f px off depth, as of a camera with %s; %s", found->offset_px,
                    pf::describe(found->camera).c_str(),
                    registers_color_ ? "it is registered from now on"
-                                    : "calibration/color:=learn registers it");
+                                    : "calibration: {color: learn} in config:=FILE registers it");
     }
     return out;
   }
@@ -208,6 +217,8 @@ class BlurGateNodelet : public ChainNodelet {
   pf::Rectifier rectifier_;
   pf::ColorLearner color_;
   bool registers_color_ = false;
+  std::optional<pf::PinholeCamera> depth_camera_;  ///< that the file of the colour camera is of
+  std::string color_file_;
   std::unique_ptr<pf::BlurGate> gate_;
   std::unique_ptr<InputPairing> pairing_;
   ros::Publisher score_publisher_, info_publisher_, depth_publisher_, color_publisher_;

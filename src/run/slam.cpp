@@ -48,6 +48,7 @@ Slam::Slam(Config config, FrameSource& recording) {
       throw InputError("pose.detector: recorded, but the recording has no people");
   }
   state_ = std::make_unique<State>(config, std::move(people));
+  if (const auto color = recording.colorCamera()) state_->pipeline.registerColor(*color);
 }
 
 Slam::Slam(Slam&& other) noexcept = default;

@@ -55,10 +55,11 @@ ordered_json loopsJson(const LoopCounts& c, const BackEnd::Counts& corrections) 
 }
 
 ordered_json colorJson(const ColorEstimate& e, bool registers) {
-  ordered_json out = {{"lies_over_depth", !e.doubt.empty()},
-                      {"offset_px", e.offset_px},
-                      {"offset_known_to_px", e.unknown_px}};
-  if (!e.doubt.empty()) return out;
+  ordered_json out = {{"offset_px", e.offset_px}, {"offset_known_to_px", e.unknown_px}};
+  if (!e.doubt.empty()) {
+    out["left_because"] = e.doubt;
+    return out;
+  }
   const ColorCamera& c = e.camera;
   out["registered"] = registers;
   out["color_fx"] = c.fx;

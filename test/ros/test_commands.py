@@ -50,8 +50,8 @@ class Commands(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="posefusion_commands_")
         self.addCleanup(shutil.rmtree, self.folder)
-        self.environment = dict(os.environ, ROS_HOSTNAME="localhost", PYTHONUNBUFFERED="1", ROS_HOME=self.folder + "/ros",
-                                PWD=self.folder)
+        self.environment = dict(os.environ, ROS_HOSTNAME="localhost", PYTHONUNBUFFERED="1",
+                                ROS_HOME=self.folder + "/ros", PWD=self.folder)
         self.new_master()
         sequence = self.folder + "/sequence"
         self.run_to_its_end(program("posefusion_simulate") + " box_walker --duration 2 --output " + sequence)

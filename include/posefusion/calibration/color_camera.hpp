@@ -30,7 +30,7 @@ inline ColorCamera registeredTo(const PinholeCamera& depth) {
   return {depth.fx, depth.fy, depth.cx, depth.cy, 0.0};
 }
 
-/// "fx 525.0 fy 525.0 cx 319.5 cy 239.5, the depth camera 27 mm right of it".
+/// "fx 525.0 fy 525.0 cx 319.5 cy 239.5, the depth camera 27.0 mm right of it".
 std::string describe(const ColorCamera& camera);
 
 }  // namespace pf

@@ -12,7 +12,7 @@
 
 namespace pf {
 
-/// Finds out in the first second whether colour lies over depth, and registers it where it does
+/// Finds out in the first seconds whether colour lies over depth, and registers it where it does
 /// not. The same frames give the same bytes: the estimate is worked out in a thread of its own, and
 /// taken up at a frame that its time does not decide. Not thread safe.
 class ColorLearner {

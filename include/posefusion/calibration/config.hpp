@@ -10,8 +10,8 @@ struct CalibrationConfig {
   /// learn: depth is corrected by what is known, and mapping learns more; frozen: by what is known;
   /// none: it is taken as measured.
   std::string mode = "learn";
-  /// Where colour does not lie over depth in the first second. tell: that is reported; learn: it is
-  /// registered from then on; none: nothing is looked at.
+  /// Where colour does not lie over depth in the first seconds. tell: that is reported; learn: it
+  /// is registered from then on; none: nothing is looked at.
   std::string color = "tell";
 
   bool learns() const { return mode == "learn"; }
@@ -25,7 +25,7 @@ inline void visitFields(CalibrationConfig& c, FieldVisitor& v) {
            "learn: depth is corrected by what is known of the camera, and mapping learns more; "
            "frozen: by what is known; none: it is taken as measured");
   v.choice("color", c.color, {"tell", "learn", "none"},
-           "where colour does not lie over depth in the first second: tell: that is reported; "
+           "where colour does not lie over depth in the first seconds: tell: that is reported; "
            "learn: it is registered from then on; none: nothing is looked at");
 }
 

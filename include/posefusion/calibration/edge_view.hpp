@@ -13,11 +13,12 @@ struct EdgeView {
   std::vector<float> x, y;     ///< where depth steps, pixels
   std::vector<float> inverse;  ///< of the nearer side, 1/m
   cv::Mat strength;            ///< CV_8UC1, how much colour is an edge there
+  double mean_strength = 0;    ///< of all pixels
 
   std::size_t size() const { return x.size(); }
 };
 
-/// Without lens distortion.
+/// `frame`: without lens distortion.
 EdgeView edgeView(const RgbdFrame& frame);
 
 }  // namespace pf
