@@ -167,7 +167,7 @@ std::vector<cv::Mat> learned(ColorLearner& learner, const ColorCamera& color, in
   std::vector<cv::Mat> pictures;
   for (int i = 0; i < frames; ++i) {
     const RgbdFrame frame = frameOf(Boards(static_cast<unsigned>(i)), color, i * 60'000'000LL);
-    const RgbdFrame out = learner.registered(frame, true);
+    const RgbdFrame out = learner.registered(frame);
     const bool is_same = out.color.data == frame.color.data;
     pictures.push_back(is_same ? cv::Mat() : out.color);
   }
@@ -205,7 +205,7 @@ TEST(ColorLearner, UsesWhatItIsGivenFromTheFirstFrameOn) {
   learner.give(kBeside);
   const RgbdFrame frame = frameOf(Boards(3), kBeside);
   const cv::Mat expected = ColorRegistration(kBeside).registered(frame).color;
-  EXPECT_EQ(cv::norm(learner.registered(frame, false).color, expected, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(learner.registered(frame).color, expected, cv::NORM_INF), 0.0);
   EXPECT_FALSE(learner.estimate().has_value());
 }
 
@@ -215,7 +215,7 @@ TEST(ColorLearner, BeginsAnewWithAnotherCamera) {
   ASSERT_TRUE(learner.estimate().has_value());
   RgbdFrame other = frameOf(Boards(1), kBeside, 5'000'000'000LL);
   other.camera.fx = 300;
-  EXPECT_EQ(learner.registered(other, true).color.data, other.color.data);
+  EXPECT_EQ(learner.registered(other).color.data, other.color.data);
   EXPECT_FALSE(learner.estimate().has_value());
 }
 
@@ -225,7 +225,7 @@ TEST(ColorEstimate, KnowsTheKinectOfARealRecording) {
   const auto source = openTumFolder(folder);
   ColorLearner learner(kLearns);
   while (auto next = source->next()) {
-    learner.registered(next->frame, true);
+    learner.registered(next->frame);
     if (learner.estimate()) break;
   }
   ASSERT_TRUE(learner.estimate().has_value());

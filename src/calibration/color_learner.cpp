@@ -17,7 +17,7 @@ constexpr std::int64_t kWork_ns = 1'000'000'000;
 
 }  // namespace
 
-RgbdFrame ColorLearner::registered(const RgbdFrame& frame, bool sharp) {
+RgbdFrame ColorLearner::registered(const RgbdFrame& frame) {
   if (registration_ && !estimate_) return registration_->registered(frame);  // given
   if (!config_.looksAtColor()) return frame;
   if (!isSameCamera(camera_, frame.camera)) {
@@ -26,7 +26,7 @@ RgbdFrame ColorLearner::registered(const RgbdFrame& frame, bool sharp) {
   }
   takeUp(frame.stamp_ns);
   if (registration_) return registration_->registered(frame);
-  if (sharp && !estimate_ && !working_.valid()) learn(frame);
+  if (!estimate_ && !working_.valid()) learn(frame);
   return frame;
 }
 

@@ -2,10 +2,7 @@
 #include "posefusion/calibration/color_registration.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
-#include <string>
 
 #include "posefusion/core/parallel.hpp"
 
@@ -60,15 +57,6 @@ void clearHidden(double zoom, double shift_px_m, int width, float* x) {
 }
 
 }  // namespace
-
-std::string describe(const ColorCamera& c) {
-  char text[160];
-  std::snprintf(text, sizeof(text),
-                "fx %.1f fy %.1f cx %.1f cy %.1f, the depth camera %.1f mm %s of it", c.fx, c.fy,
-                c.cx, c.cy, 1e3 * std::abs(c.depth_right_m),
-                c.depth_right_m < 0 ? "left" : "right");
-  return text;
-}
 
 RgbdFrame ColorRegistration::registered(const RgbdFrame& frame) {
   depthInMetres(frame, kNearest_m, kAnyDepth_m, depth_m_);

@@ -121,7 +121,7 @@ class BlurGateNodelet : public ChainNodelet {
                            pf::describe(frame.camera));
     }
     const bool was_known = color_.estimate().has_value();
-    pf::RgbdFrame out = color_.registered(frame, true);
+    pf::RgbdFrame out = color_.registered(frame);
     const auto& found = color_.estimate();
     if (!was_known && found && found->doubt.empty()) {
       NODELET_WARN("colour is %.0f px off depth, as of a camera with %s; %s", found->offset_px,

@@ -31,7 +31,7 @@ SeenFrame Pipeline::see(const RgbdFrame& frame) {
   Stopwatch watch;
   seen.frame = rectifier_.rectify(frame);
   seen.blur = gate_.judge(measureSharpness(seen.frame.color), frame.stamp_ns);
-  seen.frame = color_.registered(seen.frame, seen.blur.sharp);
+  if (seen.blur.sharp) seen.frame = color_.registered(seen.frame);
   seen.gate_ms = watch.lapMs();
   seen.people.stamp_ns = frame.stamp_ns;
   if (seen.blur.sharp) seen.people = detector_->detect(seen.frame);

@@ -23,9 +23,8 @@ class ColorLearner {
   void give(const ColorCamera& camera) { registration_.emplace(camera); }
 
   /// The frame with colour registered to depth, as far as it is known: the same pixels where
-  /// nothing is known, or nothing is wrong. `frame`: without lens distortion; frames that are not
-  /// `sharp` teach nothing.
-  RgbdFrame registered(const RgbdFrame& frame, bool sharp);
+  /// nothing is known, or nothing is wrong. `frame`: sharp, without lens distortion.
+  RgbdFrame registered(const RgbdFrame& frame);
 
   /// What was found, from the frame on that it is used at; its doubt says why it is not used.
   const std::optional<ColorEstimate>& estimate() const { return estimate_; }

@@ -18,8 +18,6 @@ class ColorRegistration {
   /// The frame with colour as the depth camera would see it, in memory of its own.
   RgbdFrame registered(const RgbdFrame& frame);
 
-  const ColorCamera& camera() const { return camera_; }
-
  private:
   ColorCamera camera_;
   cv::Mat depth_m_, x_, y_;  ///< CV_32FC1; where in the colour image
