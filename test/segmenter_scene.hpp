@@ -69,7 +69,7 @@ class SegmenterChain {
 
   Segmentation segment(const RgbdFrame& frame, const People& people, const ModelView* background) {
     flow_.advance(frame);
-    return segmenter_.segment(frame, flow_, people, background);
+    return segmenter_.segment(frame, flow_.images(), people, background);
   }
   void reset() { segmenter_.reset(); }
 

@@ -47,7 +47,7 @@ TEST(Flow, FollowsAShiftToATenthOfAPixel) {
   ASSERT_GT(flow.before.size(), 100U);
   ASSERT_EQ(flow.before.size(), flow.after.size());
   EXPECT_GE(shareAt(flow, {7.5F, -4.25F}, 0.15), 0.95);
-  const FollowedPoints points = tracker.follow({{200, 150}, {430, 333}});
+  const FollowedPoints points = tracker.images().follow({{200, 150}, {430, 333}});
   ASSERT_EQ(points.found[0], 1);
   EXPECT_NEAR(points.after[1].x, 437.5, 0.3);
   EXPECT_NEAR(points.after[1].y, 328.75, 0.3);
@@ -110,7 +110,7 @@ TEST(Flow, NothingIsFollowedOverAChangeOfSizeOrAReset) {
   FlowTracker tracker;
   tracker.advance(frameOf(0, 0, 1));
   EXPECT_TRUE(tracker.advance(frameOf(0, 0, 2, {320, 240})).empty());
-  EXPECT_EQ(tracker.follow({{5, 5}}).found[0], 0)
+  EXPECT_EQ(tracker.images().follow({{5, 5}}).found[0], 0)
       << "the pyramids are of one size, the frames are not";
   tracker.reset();
   EXPECT_TRUE(tracker.advance(frameOf(0, 0, 3)).empty());

@@ -65,7 +65,7 @@ TEST(TrackedPeople, AJointThatLeavesTheImageGoesOnWithItsPerson) {
     flow.advance(scene.frame);
     sampleGrid(scene.frame, scene.frame.depth, 160, grid);
     if (i == 0) people[0].person = scene.people.people[0];
-    if (i > 0) carryPeople(flow, grid, people);
+    if (i > 0) carryPeople(flow.images(), grid, people);
   }
   const Person& person = people[0].person;
   const int way = kStep_px * kFrames;

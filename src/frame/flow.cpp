@@ -53,24 +53,35 @@ void follow(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
 
 }  // namespace
 
+FollowedPoints FlowImages::follow(const std::vector<cv::Point2f>& before) const {
+  FollowedPoints points{before, std::vector<std::uint8_t>(before.size(), 0)};
+  if (!comparable_ || before.empty()) return points;
+  std::vector<cv::Point2f> scaled(before);
+  for (cv::Point2f& p : scaled) p = toPyramid(p, scale_);
+  points.after = scaled;
+  pf::follow(last_, newest_, scaled, points.after, points.found);
+  for (cv::Point2f& p : points.after) p = toImage(p, scale_);
+  return points;
+}
+
 const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
-  last_.swap(newest_);
+  images_.last_.swap(images_.newest_);
   const int width = std::min(kFlowWidth, frame.color.cols);
-  scale_ = static_cast<float>(width) / static_cast<float>(frame.color.cols);
-  const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * scale_)));
+  images_.scale_ = static_cast<float>(width) / static_cast<float>(frame.color.cols);
+  const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * images_.scale_)));
   cv::resize(frame.color, small_, {width, height}, 0, 0, cv::INTER_AREA);
   cv::cvtColor(small_, grey_, cv::COLOR_RGB2GRAY);
   flatten();
-  newest_.clear();
-  cv::buildOpticalFlowPyramid(grey_, newest_, kWindow, kPyramidLevels);
-  comparable_ = !last_.empty() && frame_size_ == frame.color.size();
+  images_.newest_.clear();
+  cv::buildOpticalFlowPyramid(grey_, images_.newest_, kWindow, kPyramidLevels);
+  images_.comparable_ = !images_.last_.empty() && frame_size_ == frame.color.size();
   frame_size_ = frame.color.size();
   flow_.before.clear();
   flow_.after.clear();
   flow_.ids.clear();
   flow_.from_ns = newest_ns_;
   flow_.to_ns = newest_ns_ = frame.stamp_ns;
-  if (comparable_ && !corners_.empty()) followCorners();
+  if (images_.comparable_ && !corners_.empty()) followCorners();
   keep(flow_.after);
   findCorners();
   return flow_;
@@ -88,9 +99,9 @@ void FlowTracker::followCorners() {
   const auto attempt = [&](const cv::Point2f& shift) {
     there_ = corners_;
     for (cv::Point2f& p : there_) p += shift;
-    pf::follow(last_, newest_, corners_, there_, found_);
+    pf::follow(images_.last_, images_.newest_, corners_, there_, found_);
     back_ = corners_;
-    pf::follow(newest_, last_, there_, back_, returned_);
+    pf::follow(images_.newest_, images_.last_, there_, back_, returned_);
     std::size_t count = 0;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       const cv::Point2f error = back_[i] - corners_[i];
@@ -103,8 +114,8 @@ void FlowTracker::followCorners() {
   if (attempt({}) < corners_.size() / kFewFollowed) attempt(wholeShift());
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     if (found_[i] == 0) continue;
-    flow_.before.push_back(toImage(corners_[i], scale_));
-    flow_.after.push_back(toImage(there_[i], scale_));
+    flow_.before.push_back(toImage(corners_[i], images_.scale_));
+    flow_.after.push_back(toImage(there_[i], images_.scale_));
     flow_.ids.push_back(ids_[i]);
   }
 }
@@ -116,8 +127,8 @@ cv::Point2f FlowTracker::wholeShift() {
     cv::resize(pyramid[0], small_, {}, kCoarse, kCoarse, cv::INTER_AREA);
     small_.convertTo(out, CV_32F);
   };
-  coarse(last_, coarse_before_);
-  coarse(newest_, coarse_after_);
+  coarse(images_.last_, coarse_before_);
+  coarse(images_.newest_, coarse_after_);
   cv::createHanningWindow(hanning_, coarse_before_.size(), CV_32F);
   const cv::Point2d shift = cv::phaseCorrelate(coarse_before_, coarse_after_, hanning_);
   return {static_cast<float>(shift.x / kCoarse), static_cast<float>(shift.y / kCoarse)};
@@ -130,7 +141,7 @@ void FlowTracker::keep(const std::vector<cv::Point2f>& followed) {
   free_.create(grey_.size(), CV_8UC1);
   free_.setTo(255);
   for (std::size_t i = 0; i < followed.size(); ++i) {
-    const cv::Point2f p = toPyramid(followed[i], scale_);
+    const cv::Point2f p = toPyramid(followed[i], images_.scale_);
     const cv::Point at(cvRound(p.x), cvRound(p.y));
     if (!cv::Rect(0, 0, grey_.cols, grey_.rows).contains(at) || free_.at<std::uint8_t>(at) == 0) {
       continue;
@@ -139,17 +150,6 @@ void FlowTracker::keep(const std::vector<cv::Point2f>& followed) {
     corners_.push_back(p);
     ids_.push_back(flow_.ids[i]);
   }
-}
-
-FollowedPoints FlowTracker::follow(const std::vector<cv::Point2f>& before) const {
-  FollowedPoints points{before, std::vector<std::uint8_t>(before.size(), 0)};
-  if (!comparable_ || before.empty()) return points;
-  std::vector<cv::Point2f> scaled(before);
-  for (cv::Point2f& p : scaled) p = toPyramid(p, scale_);
-  points.after = scaled;
-  pf::follow(last_, newest_, scaled, points.after, points.found);
-  for (cv::Point2f& p : points.after) p = toImage(p, scale_);
-  return points;
 }
 
 void FlowTracker::findCorners() {

@@ -74,6 +74,7 @@ void RunStatistics::addMask(const ProcessedFrame& frame) {
 void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("gate", frame.seen.gate_ms);
   if (frame.seen.people.detected) addTime("pose", frame.seen.pose_ms);
+  addTime("flow", frame.seen.flow_ms);
   addTime("segmentation", frame.segmentation_ms);
   addTime("tracking", frame.status.tracking_ms);
   addTime("fusion", frame.status.fusion_ms);
@@ -81,8 +82,8 @@ void RunStatistics::addTimes(const ProcessedFrame& frame) {
   addTime("loop_closing", frame.loop_ms);
   addTime("loop_waiting", frame.loop_wait_ms);
   if (!first_stamp_ns_) first_stamp_ns_ = frame.status.stamp_ns;
-  const double whole = frame.seen.gate_ms + frame.seen.pose_ms + frame.segmentation_ms +
-                       frame.status.tracking_ms + frame.status.fusion_ms +
+  const double whole = frame.seen.gate_ms + frame.seen.pose_ms + frame.seen.flow_ms +
+                       frame.segmentation_ms + frame.status.tracking_ms + frame.status.fusion_ms +
                        (std::isnan(frame.loop_ms) ? 0.0 : frame.loop_ms);
   if (!std::isnan(whole)) {
     minutes_ms_[(frame.status.stamp_ns - *first_stamp_ns_) / kMinute_ns].push_back(whole);

@@ -14,25 +14,56 @@ constexpr float kMinPartDepth_m = 0.2F;      // nearer parts of a capsule cover 
 constexpr float kReachTowardsCamera = 0.5F;  // of a capsule's reach, where its bounds are taken
 constexpr float kMinLength2_m2 = 1e-8F;      // a shorter capsule is a point
 
-/// Squared distance of points to the line of a capsule.
-struct SegmentDistance {
-  Eigen::Vector3f start, direction;
+/// A capsule's line, and the part of the grid that its reach can cover.
+struct Line {
+  float start[3], direction[3];
   float inverse_length2;  // 0 for a point
+  float inverse_radius;
+  float depth_m;  // of cells without any
+  std::int16_t owner;
+  cv::Rect bounds;
 
-  explicit SegmentDistance(const Capsule& c) : start(c.from), direction(c.to - c.from) {
-    const float length2 = direction.squaredNorm();
+  Line(const Capsule& c, float body_depth_m, std::size_t person)
+      : inverse_radius(1.0F / c.radius_m),
+        depth_m(body_depth_m),
+        owner(static_cast<std::int16_t>(person)) {
+    const Eigen::Vector3f along = c.to - c.from;
+    for (int i = 0; i < 3; ++i) {
+      start[i] = c.from[i];
+      direction[i] = along[i];
+    }
+    const float length2 = along.squaredNorm();
     inverse_length2 = length2 > kMinLength2_m2 ? 1.0F / length2 : 0.0F;
   }
-  float squared(float x, float y, float z) const {
-    const float dx = x - start.x(), dy = y - start.y(), dz = z - start.z();
-    const float t =
-        std::clamp((dx * direction.x() + dy * direction.y() + dz * direction.z()) * inverse_length2,
-                   0.0F, 1.0F);
-    const float ex = dx - t * direction.x(), ey = dy - t * direction.y(),
-                ez = dz - t * direction.z();
-    return ex * ex + ey * ey + ez * ez;
-  }
 };
+
+/// Cells of one row, one after another.
+struct RowOfCells {
+  const float *ray_x, *ray_y, *z;
+  float* relative;
+  std::int16_t* owner;
+  int count;
+};
+
+POSEFUSION_SIMD_CLONES
+void measureRow(const Line& line, const RowOfCells& row) {
+  for (int i = 0; i < row.count; ++i) {
+    const float z = row.z[i] > 0.0F ? row.z[i] : line.depth_m;
+    const float dx = row.ray_x[i] * z - line.start[0];
+    const float dy = row.ray_y[i] * z - line.start[1];
+    const float dz = z - line.start[2];
+    const float along = (dx * line.direction[0] + dy * line.direction[1] + dz * line.direction[2]) *
+                        line.inverse_length2;
+    const float from_start = along < 0.0F ? 0.0F : along;
+    const float t = from_start > 1.0F ? 1.0F : from_start;
+    const float ex = dx - t * line.direction[0], ey = dy - t * line.direction[1],
+                ez = dz - t * line.direction[2];
+    const float relative = std::sqrt(ex * ex + ey * ey + ez * ez) * line.inverse_radius;
+    const bool is_nearer = relative < row.relative[i];
+    row.relative[i] = is_nearer ? relative : row.relative[i];
+    row.owner[i] = is_nearer ? line.owner : row.owner[i];
+  }
+}
 
 /// Columns and rows that a capsule with its reach can cover.
 cv::Rect boundsOf(const Capsule& capsule, float reach_m, const SceneGrid& grid) {
@@ -61,29 +92,24 @@ void measureDistance(const std::vector<TrackedPerson>& people, const SceneGrid& 
                      BodyDistance& distance) {
   distance.relative.assign(grid.size(), limit);
   distance.owner.assign(grid.size(), -1);
+  std::vector<Line> lines;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const Body& body = people[i].body;
-    for (const Capsule& capsule : body.capsules) {
-      const SegmentDistance segment(capsule);
-      const cv::Rect bounds = boundsOf(capsule, limit * capsule.radius_m, grid);
-      const float inverse_radius = 1.0F / capsule.radius_m;
-      parallelFor(std::max(0, bounds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-        for (int row = bounds.y + static_cast<int>(begin); row < bounds.y + static_cast<int>(end);
-             ++row) {
-          for (int col = bounds.x; col < bounds.x + bounds.width; ++col) {
-            const int cell = row * grid.cols + col;
-            const float z = grid.z[cell] > 0.0F ? grid.z[cell] : body.depth_m;
-            const float relative =
-                std::sqrt(segment.squared(grid.ray_x[cell] * z, grid.ray_y[cell] * z, z)) *
-                inverse_radius;
-            if (relative >= distance.relative[cell]) continue;
-            distance.relative[cell] = relative;
-            distance.owner[cell] = static_cast<std::int16_t>(i);
-          }
-        }
-      });
+    for (const Capsule& capsule : people[i].body.capsules) {
+      lines.emplace_back(capsule, people[i].body.depth_m, i);
+      lines.back().bounds = boundsOf(capsule, limit * capsule.radius_m, grid);
     }
   }
+  parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (const Line& line : lines) {
+        const cv::Rect& b = line.bounds;
+        if (y < b.y || y >= b.y + b.height) continue;
+        const int cell = y * grid.cols + b.x;
+        measureRow(line, {&grid.ray_x[cell], &grid.ray_y[cell], &grid.z[cell],
+                          &distance.relative[cell], &distance.owner[cell], b.width});
+      }
+    }
+  });
 }
 
 }  // namespace pf

@@ -21,21 +21,31 @@ constexpr std::array<Neighbour, 4> kNeighbours{
 
 constexpr float kHoleEdge = 0.15F;      // part of the smoothness across missing depth
 constexpr float kColorSpread = 900.0F;  // square of a colour difference that makes an edge cheap
+constexpr int kMostTabled = 8192;  // squares of colour differences; above, exp(-9.1) is nothing
 constexpr float kColorlessEdge = 0.4F;  // part of the smoothness that colour does not touch
 constexpr float kMinReach = 2.5F;       // of the length scale, in spacings of neighbours there
 
 /// Cells that cannot be a person stay out of the graph: they only pull on their neighbours.
 bool isInGraph(float unary) { return unary > -kCertain; }
 
-float colorDifference2(const SceneGrid& grid, int a, int b) {
+int colorDifference2(const SceneGrid& grid, int a, int b) {
   const cv::Vec3b& p = grid.color.ptr<cv::Vec3b>()[a];
   const cv::Vec3b& q = grid.color.ptr<cv::Vec3b>()[b];
-  float sum = 0.0F;
-  for (int k = 0; k < 3; ++k) {
-    const float difference = static_cast<float>(p[k]) - static_cast<float>(q[k]);
-    sum += difference * difference;
-  }
+  int sum = 0;
+  for (int k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
   return sum;
+}
+
+/// How alike two colours are, 1 for the same, by the square of their difference. From a table: it
+/// is asked for every edge of the graph.
+float likeness(int difference2) {
+  static const std::vector<float> kLikeness = [] {
+    std::vector<float> table(kMostTabled);
+    for (int i = 0; i < kMostTabled; ++i)
+      table[i] = std::exp(-static_cast<float>(i) / kColorSpread);
+    return table;
+  }();
+  return difference2 < kMostTabled ? kLikeness[difference2] : 0.0F;
 }
 
 }  // namespace
@@ -94,7 +104,7 @@ void GridCutter::cut(const SceneGrid& grid, const Unary& unary, const Segmentati
   const float smoothness = static_cast<float>(config.smoothness);
   const float sigma_m = static_cast<float>(config.sigma_m);
   weigh(grid, unary, [&](int a, int b) {
-    const float contrast = std::exp(-colorDifference2(grid, a, b) / kColorSpread);
+    const float contrast = likeness(colorDifference2(grid, a, b));
     const float blended = smoothness * (kColorlessEdge + (1.0F - kColorlessEdge) * contrast);
     if (!grid.hasDepth(a) || !grid.hasDepth(b)) return kHoleEdge * blended;
     const float reach_m = std::max(sigma_m, kMinReach * grid.spacing * grid.z[a]);

@@ -35,8 +35,6 @@ constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
 constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
 
-constexpr std::size_t kCellsAtOnce = 1024;
-
 /// What the map says of a cell, unless its candidate is known to be in the map by mistake.
 Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerson>& people,
                         int cell) {

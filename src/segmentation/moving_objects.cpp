@@ -61,14 +61,22 @@ void MovingObjects::reset() {
   labels_.clear();
 }
 
+/// Cells that may be of something that moves: neither a person's nor surely the map's.
+void MovingObjects::findOpenCells(const MovingScene& scene) {
+  open_.clear();
+  for (int cell = 0; cell < scene.grid.size(); ++cell) {
+    const Background background = scene.background[cell];
+    if (background == Background::agrees || background == Background::farther) continue;
+    if (scene.grid.hasDepth(cell) && scene.is_person[cell] == 0) open_.push_back(cell);
+  }
+}
+
 /// Cells whose place was seen to be empty, as far as they are no noise along an edge.
 void MovingObjects::findSeeds(const MovingScene& scene) {
   const SceneGrid& grid = scene.grid;
   seeds_.assign(grid.size(), 0);
-  for (int cell = 0; cell < grid.size(); ++cell) {
-    const Background background = scene.background[cell];
-    const bool is_before = background == Background::nearer || background == Background::unknown;
-    seeds_[cell] = is_before && scene.is_person[cell] == 0 && before_.wasFree(cell) ? 1 : 0;
+  for (const int cell : open_) {
+    seeds_[cell] = scene.background[cell] != Background::recent && before_.wasFree(cell) ? 1 : 0;
   }
   cv::Mat image(grid.rows, grid.cols, CV_8UC1, seeds_.data());
   const cv::Mat kernel = cv::Mat::ones(kLeastThickness, kLeastThickness, CV_8UC1);
@@ -226,7 +234,8 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
 
 std::vector<MovingObject> MovingObjects::find(const MovingScene& scene) {
   before_.know(scene.view);
-  before_.compare(scene.grid, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
+  findOpenCells(scene);
+  before_.compare(scene.grid, open_, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
   const double elapsed_s = std::max(0.0, secondsBetween(last_ns_, scene.stamp_ns));
   findSeeds(scene);
   carryObjects(scene);

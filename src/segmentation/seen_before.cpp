@@ -63,8 +63,9 @@ const SeenBefore::Moment* SeenBefore::nearestTo(std::int64_t stamp_ns) const {
   return nearest;
 }
 
-void SeenBefore::compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,
-                         std::int64_t stamp_ns, const DepthSensor& sensor) {
+void SeenBefore::compare(const SceneGrid& grid, const std::vector<int>& cells,
+                         const Eigen::Isometry3d& T_uncorrected_camera, std::int64_t stamp_ns,
+                         const DepthSensor& sensor) {
   for (std::size_t i = 0; i < kAges_s.size(); ++i) {
     const auto age_ns = static_cast<std::int64_t>(kAges_s[i] * 1e9);
     const Moment* moment = nearestTo(stamp_ns - age_ns);
@@ -74,7 +75,7 @@ void SeenBefore::compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncor
     }
     const Eigen::Isometry3d T_view_camera =
         moment->view.T_map_camera.inverse() * T_uncorrected_camera;
-    compareWithModel(grid, moment->view, T_view_camera, sensor, moments_[i]);
+    compareWithModel(grid, cells, moment->view, T_view_camera, sensor, moments_[i]);
   }
 }
 

@@ -30,7 +30,7 @@ PeopleSegmenter::PeopleSegmenter(const SegmentationConfig& config, const DepthSe
 PeopleSegmenter::~PeopleSegmenter() = default;
 
 /// False when there are no people. Else `labels` are the people's.
-bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowTracker& flow,
+bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowImages& flow,
                                  const People& people) {
   State& s = *state_;
   s.labels.assign(s.evidence.grid.size(), 0);
@@ -83,7 +83,7 @@ void PeopleSegmenter::placePeople(const ModelView* view,
                 result);
 }
 
-Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowTracker& flow,
+Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& flow,
                                       const People& people, const ModelView* background,
                                       const std::optional<Eigen::Vector3d>& up_camera) {
   if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);

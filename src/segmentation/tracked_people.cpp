@@ -50,7 +50,7 @@ PersonPoints pointsOf(const TrackedPerson& tracked, const SceneGrid& grid) {
   return points;
 }
 
-void follow(const FlowTracker& flow, PersonPoints& points) {
+void follow(const FlowImages& flow, PersonPoints& points) {
   points.followed = flow.follow(points.before);
   std::vector<float> du, dv;
   for (std::size_t i = 0; i < points.before.size(); ++i) {
@@ -136,7 +136,7 @@ void dropJointsOutside(const SceneGrid& grid, float margin_px, Person& person) {
   }
 }
 
-void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
+void carryPeople(const FlowImages& flow, const SceneGrid& grid,
                  std::vector<TrackedPerson>& people) {
   const auto width_px = static_cast<float>(grid.step * grid.cols);
   const float max_deviation_px = kMaxDeviation * width_px;

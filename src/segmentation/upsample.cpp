@@ -27,7 +27,8 @@ struct BlockPixels {
   float inverse_gap[kMost];  // 1 / the gap in depth that counts 1
   float color[3][kMost];
 
-  void set(int i, const RgbdFrame& frame, const cv::Mat& depth_m, int step, const cv::Point& at) {
+  void add(const RgbdFrame& frame, const cv::Mat& depth_m, int step, const cv::Point& at) {
+    const int i = count++;
     u[i] = static_cast<float>(at.x) / static_cast<float>(step);
     v[i] = static_cast<float>(at.y) / static_cast<float>(step);
     z[i] = depth_m.at<float>(at);
@@ -84,74 +85,81 @@ void addVotes(const BlockPixels& p, const CellVote& cell, float* __restrict sums
   }
 }
 
-/// The cells around a block vote for the labels of its pixels.
-void votePersons(const SceneGrid& grid, const std::vector<std::uint8_t>& labels, int row0, int col0,
-                 const BlockPixels& pixels, std::uint8_t* is_person) {
-  float person[BlockPixels::kMost] = {}, other[BlockPixels::kMost] = {};
-  for (int row = std::max(0, row0 - 1); row <= std::min(grid.rows - 1, row0 + 1); ++row) {
-    for (int col = std::max(0, col0 - 1); col <= std::min(grid.cols - 1, col0 + 1); ++col) {
-      const int cell = row * grid.cols + col;
-      const cv::Vec3b& color = grid.color.ptr<cv::Vec3b>(row)[col];
-      const CellVote vote{static_cast<float>(col) + 0.5F,
-                          static_cast<float>(row) + 0.5F,
-                          grid.z[cell],
-                          {static_cast<float>(color[0]), static_cast<float>(color[1]),
-                           static_cast<float>(color[2])}};
-      addVotes(pixels, vote, labels[cell] != 0 ? person : other);
+/// A frame, the labels of its cells, and the mask that is filled block by block.
+struct Upsampling {
+  const RgbdFrame& frame;
+  const cv::Mat& depth_m;
+  const SceneGrid& grid;
+  const std::vector<std::uint8_t>& labels;
+  cv::Mat& mask;
+  cv::Mat any, all;  // of the labels of 3x3 cells
+
+  Upsampling(const RgbdFrame& of, const cv::Mat& of_depth_m, const SceneGrid& cells,
+             const std::vector<std::uint8_t>& of_cells, cv::Mat& filled)
+      : frame(of), depth_m(of_depth_m), grid(cells), labels(of_cells), mask(filled) {
+    const cv::Mat image(grid.rows, grid.cols, CV_8UC1, const_cast<std::uint8_t*>(labels.data()));
+    cv::dilate(image, any, cv::noArray());
+    cv::erode(image, all, cv::noArray());
+  }
+
+  /// The cells around a block vote for the labels of its pixels.
+  void vote(int row0, int col0, const BlockPixels& pixels, std::uint8_t* is_person) const {
+    float person[BlockPixels::kMost] = {}, other[BlockPixels::kMost] = {};
+    for (int row = std::max(0, row0 - 1); row <= std::min(grid.rows - 1, row0 + 1); ++row) {
+      for (int col = std::max(0, col0 - 1); col <= std::min(grid.cols - 1, col0 + 1); ++col) {
+        const int cell = row * grid.cols + col;
+        const cv::Vec3b& color = grid.color.ptr<cv::Vec3b>(row)[col];
+        const CellVote vote{static_cast<float>(col) + 0.5F,
+                            static_cast<float>(row) + 0.5F,
+                            grid.z[cell],
+                            {static_cast<float>(color[0]), static_cast<float>(color[1]),
+                             static_cast<float>(color[2])}};
+        addVotes(pixels, vote, labels[cell] != 0 ? person : other);
+      }
+    }
+    // Missing depth along an edge is shadow on the background; inside a person it is a person.
+    for (int i = 0; i < pixels.count; ++i) {
+      is_person[i] = person[i] > (pixels.z[i] > 0.0F ? other[i] : kHoleOdds * other[i]) ? 255 : 0;
     }
   }
-  // Missing depth along an edge is shadow on the background; inside a person it is a person.
-  for (int i = 0; i < pixels.count; ++i) {
-    is_person[i] = person[i] > (pixels.z[i] > 0.0F ? other[i] : kHoleOdds * other[i]) ? 255 : 0;
-  }
-}
 
-enum class Surroundings { other, person, mixed };
-
-/// The labels of the cells around and including this.
-Surroundings surroundings(const SceneGrid& grid, const std::vector<std::uint8_t>& labels, int row,
-                          int col) {
-  int persons = 0, cells = 0;
-  for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
-    for (int c = std::max(0, col - 1); c <= std::min(grid.cols - 1, col + 1); ++c) {
-      persons += labels[r * grid.cols + c];
-      ++cells;
+  void fillByVotes(int row, int col, const cv::Rect& block) const {
+    BlockPixels pixels;
+    std::uint8_t is_person[BlockPixels::kMost];
+    std::uint8_t* filled[BlockPixels::kMost];
+    for (int y = block.y; y < block.br().y; ++y) {
+      for (int x = block.x; x < block.br().x; ++x) {
+        filled[pixels.count] = mask.ptr<std::uint8_t>(y) + x;
+        pixels.add(frame, depth_m, grid.step, {x, y});
+        const bool is_last = y + 1 == block.br().y && x + 1 == block.br().x;
+        if (pixels.count < BlockPixels::kMost && !is_last) continue;
+        vote(row, col, pixels, is_person);
+        for (int i = 0; i < pixels.count; ++i) *filled[i] = is_person[i];
+        pixels.count = 0;
+      }
     }
   }
-  if (persons == 0) return Surroundings::other;
-  return persons == cells ? Surroundings::person : Surroundings::mixed;
-}
+
+  void fill(int row, int col) const {
+    if (any.ptr<std::uint8_t>(row)[col] == 0) return;
+    const cv::Rect block = cv::Rect(col * grid.step, row * grid.step, grid.step, grid.step) &
+                           cv::Rect(0, 0, mask.cols, mask.rows);
+    if (all.ptr<std::uint8_t>(row)[col] == 0) return fillByVotes(row, col, block);
+    for (int y = block.y; y < block.br().y; ++y) {
+      std::memset(mask.ptr<std::uint8_t>(y) + block.x, 255, static_cast<std::size_t>(block.width));
+    }
+  }
+};
 
 }  // namespace
 
 cv::Mat upsampleMask(const RgbdFrame& frame, const cv::Mat& depth_m, const SceneGrid& grid,
                      const std::vector<std::uint8_t>& labels) {
   cv::Mat mask(depth_m.size(), CV_8UC1, cv::Scalar(0));
-  const auto fillBlock = [&](int row, int col) {
-    const Surroundings kind = surroundings(grid, labels, row, col);
-    if (kind == Surroundings::other) return;
-    const cv::Rect block = cv::Rect(col * grid.step, row * grid.step, grid.step, grid.step) &
-                           cv::Rect(0, 0, mask.cols, mask.rows);
-    if (kind == Surroundings::person) {
-      mask(block).setTo(255);
-      return;
-    }
-    BlockPixels pixels;
-    std::uint8_t is_person[BlockPixels::kMost];
-    for (int first = 0; first < block.area(); first += BlockPixels::kMost) {
-      const auto pixelAt = [&](int i) {
-        return cv::Point(block.x + (first + i) % block.width, block.y + (first + i) / block.width);
-      };
-      const int count = std::min(BlockPixels::kMost, block.area() - first);
-      for (int i = 0; i < count; ++i) pixels.set(i, frame, depth_m, grid.step, pixelAt(i));
-      pixels.count = count;
-      votePersons(grid, labels, row, col, pixels, is_person);
-      for (int i = 0; i < count; ++i) mask.at<std::uint8_t>(pixelAt(i)) = is_person[i];
-    }
-  };
+  const Upsampling upsampling(frame, depth_m, grid, labels, mask);
   parallelFor(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      for (int col = 0; col < grid.cols; ++col) fillBlock(row, col);
+      for (int col = 0; col < grid.cols; ++col) upsampling.fill(row, col);
     }
   });
   return mask;

@@ -34,8 +34,12 @@ SeenFrame Pipeline::see(const RgbdFrame& frame) {
   if (seen.blur.sharp) seen.frame = color_.registered(seen.frame);
   seen.gate_ms = watch.lapMs();
   seen.people.stamp_ns = frame.stamp_ns;
-  if (seen.blur.sharp) seen.people = detector_->detect(seen.frame);
+  if (!seen.blur.sharp) return seen;
+  seen.people = detector_->detect(seen.frame);
   seen.pose_ms = watch.lapMs();
+  seen.flow = flow_.advance(seen.frame);
+  seen.flow_images = flow_.images();
+  seen.flow_ms = watch.lapMs();
   return seen;
 }
 
@@ -51,11 +55,10 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   }
   Stopwatch watch;
   const ModelView& view = mapper_.view();
-  out.flow = flow_.advance(frame);
-  out.segmentation =
-      segmenter_.segment(frame, flow_, out.seen.people, view.empty() ? nullptr : &view);
+  out.segmentation = segmenter_.segment(frame, out.seen.flow_images, out.seen.people,
+                                        view.empty() ? nullptr : &view);
   out.segmentation_ms = watch.lapMs();
-  StaticFrame still{frame, out.segmentation.mask, out.flow};
+  StaticFrame still{frame, out.segmentation.mask, out.seen.flow};
   still.frame.depth = out.segmentation.static_depth;
   still.forced = out.seen.blur.forced;
   still.in_map_mask = out.segmentation.in_map_mask;

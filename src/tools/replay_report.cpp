@@ -59,7 +59,7 @@ void ReplayReport::sent(const pf::RgbdFrame& frame) {
   pf::ProcessedFrame& whole = under_way_[frame.stamp_ns].whole;
   whole.seen.frame = frame;
   // No message holds them.
-  whole.seen.gate_ms = whole.seen.pose_ms = whole.segmentation_ms =
+  whole.seen.gate_ms = whole.seen.pose_ms = whole.seen.flow_ms = whole.segmentation_ms =
       std::numeric_limits<double>::quiet_NaN();
   if (under_way_.size() > kMostUnderWay) take(true);
 }

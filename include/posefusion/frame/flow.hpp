@@ -35,6 +35,21 @@ struct FollowedPoints {
   std::vector<std::uint8_t> found;  ///< 1 where the point was found again
 };
 
+/// Two successive frames, prepared for points to be followed from the first into the second. A
+/// value: copies share the images, which do not change any more. Any number of threads.
+class FlowImages {
+ public:
+  /// Follows points (pixels of the full image). None is found in the first frame of all or after a
+  /// change of size.
+  FollowedPoints follow(const std::vector<cv::Point2f>& before) const;
+
+ private:
+  friend class FlowTracker;
+  std::vector<cv::Mat> last_, newest_;  // pyramids
+  float scale_ = 1.0F;                  // pyramid pixels per frame pixel
+  bool comparable_ = false;
+};
+
 /// Sparse optical flow between successive frames (pyramidal Lucas and Kanade; Bouguet 2001) on
 /// small grey images: of corners (Shi and Tomasi 1994), which give the motion of the camera, and of
 /// any other points, which give that of people. The images are prepared once for both; slow changes
@@ -45,8 +60,8 @@ class FlowTracker {
   /// comes back when followed the other way. Empty for the first frame and after a change of size.
   const SparseFlow& advance(const RgbdFrame& frame);
 
-  /// Follows points (pixels of the full image) from the frame before into the newest one.
-  FollowedPoints follow(const std::vector<cv::Point2f>& before) const;
+  /// The frame before and the newest one.
+  const FlowImages& images() const { return images_; }
 
   void reset();
 
@@ -57,14 +72,12 @@ class FlowTracker {
   void keep(const std::vector<cv::Point2f>& corners);
   void findCorners();
 
-  std::vector<cv::Mat> last_, newest_;  // pyramids
-  std::vector<cv::Point2f> corners_;    // of the newest frame, pixels of its pyramid
-  std::vector<std::uint32_t> ids_;      // of the corners
+  FlowImages images_;
+  std::vector<cv::Point2f> corners_;  // of the newest frame, pixels of its pyramid
+  std::vector<std::uint32_t> ids_;    // of the corners
   std::uint32_t next_id_ = 0;
   SparseFlow flow_;
-  float scale_ = 1.0F;  // pyramid pixels per frame pixel
   cv::Size frame_size_;
-  bool comparable_ = false;
   std::int64_t newest_ns_ = 0;
   cv::Mat small_, grey_, mean_, free_, strength_, strong_, coarse_before_, coarse_after_, hanning_;
   std::vector<cv::Point2f> there_, back_;

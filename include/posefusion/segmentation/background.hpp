@@ -29,6 +29,11 @@ void compareWithModel(const SceneGrid& grid, const ModelView& view,
                       const Eigen::Isometry3d& T_view_camera, const DepthSensor& sensor,
                       std::vector<Background>& result);
 
+/// The same for some cells of the grid; all others are unknown.
+void compareWithModel(const SceneGrid& grid, const std::vector<int>& cells, const ModelView& view,
+                      const Eigen::Isometry3d& T_view_camera, const DepthSensor& sensor,
+                      std::vector<Background>& result);
+
 /// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
 /// views that differ: a view may be older than the frame before (live, or where that was not
 /// fused). Two views of different fragments give no motion.

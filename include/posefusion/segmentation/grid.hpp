@@ -9,6 +9,9 @@
 
 namespace pf {
 
+/// Cells of a grid that a thread takes at a time.
+constexpr std::size_t kCellsAtOnce = 1024;
+
 /// The organised point cloud on a reduced grid: one sample for each step x step block of pixels,
 /// row by row. Points in the camera frame, metres.
 struct SceneGrid {

@@ -45,6 +45,7 @@ class MovingObjects {
  private:
   struct Piece;
   struct Followed;
+  void findOpenCells(const MovingScene& scene);
   void findSeeds(const MovingScene& scene);
   void carryObjects(const MovingScene& scene);
   bool isOfMoving(const MovingScene& scene, int cell) const;
@@ -58,6 +59,7 @@ class MovingObjects {
   SeenBefore before_;
   std::vector<Followed> objects_;
   std::vector<std::uint8_t> labels_;
+  std::vector<int> open_;               // cells that may be of something that moves
   std::vector<std::uint8_t> seeds_;     // 1: the place was empty a moment ago
   std::vector<std::int16_t> carried_;   // object that the cell should be of, -1: none
   std::vector<std::int32_t> piece_of_;  // while pieces grow; -1: none

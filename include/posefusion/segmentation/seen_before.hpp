@@ -27,11 +27,12 @@ class SeenBefore {
   /// A view gives the pose of the frame with the same stamp. In another fragment all is forgotten.
   void know(const ModelView& view);
 
-  /// What each moment shows of the cells of a frame at `stamp_ns`, seen from T_uncorrected_camera:
+  /// What each moment shows of `cells` of a frame at `stamp_ns`, seen from T_uncorrected_camera:
   /// `nearer` = the place was seen to be empty, `agrees` = the same surface was there, `farther` =
-  /// something was in front of it. Where there is no such moment all are unknown.
-  void compare(const SceneGrid& grid, const Eigen::Isometry3d& T_uncorrected_camera,
-               std::int64_t stamp_ns, const DepthSensor& sensor);
+  /// something was in front of it. Other cells, and where there is no such moment all, are unknown.
+  void compare(const SceneGrid& grid, const std::vector<int>& cells,
+               const Eigen::Isometry3d& T_uncorrected_camera, std::int64_t stamp_ns,
+               const DepthSensor& sensor);
 
   /// By moment, cell by cell; as of the last compare().
   const std::array<std::vector<Background>, kAges_s.size()>& moments() const { return moments_; }

@@ -43,13 +43,13 @@ class PeopleSegmenter {
   explicit PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor = {});
   ~PeopleSegmenter();
 
-  /// `flow` has been advanced to this frame (once for each frame, also without people): it carries
-  /// people from the last frame into this one. After a change of the image size no person is
-  /// carried. `background` is the map rendered at the last trusted pose, with the stamp of its
-  /// frame: what agrees with it is no person. Null while there is no map or the camera is lost in
-  /// it: nothing is known of the background then, and people are carried a third as long.
-  /// `up_camera` is the upward direction in the camera frame when known (TF or configuration).
-  Segmentation segment(const RgbdFrame& frame, const FlowTracker& flow, const People& people,
+  /// `flow` leads from the last frame to this one (also without people): it carries people. After a
+  /// change of the image size no person is carried. `background` is the map rendered at the last
+  /// trusted pose, with the stamp of its frame: what agrees with it is no person. Null while there
+  /// is no map or the camera is lost in it: nothing is known of the background then, and people are
+  /// carried a third as long. `up_camera` is the upward direction in the camera frame when known
+  /// (TF or configuration).
+  Segmentation segment(const RgbdFrame& frame, const FlowImages& flow, const People& people,
                        const ModelView* background,
                        const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);
   void reset();
@@ -59,7 +59,7 @@ class PeopleSegmenter {
 
  private:
   struct State;
-  bool findPeople(const RgbdFrame& frame, const FlowTracker& flow, const People& people);
+  bool findPeople(const RgbdFrame& frame, const FlowImages& flow, const People& people);
   void keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result);
   void findObjects(const RgbdFrame& frame, const ModelView* view,
                    const Eigen::Isometry3d& T_uncorrected_camera, std::vector<std::uint8_t>& taken,

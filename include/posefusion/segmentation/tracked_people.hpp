@@ -33,8 +33,7 @@ void dropJointsOutside(const SceneGrid& grid, float margin_px, Person& person);
 /// median, else the median, and on past the border of the image. `grid`: of the newest frame, of
 /// the same size as that of the last one; `flow`: advanced to the newest frame. Where the flow
 /// knows no last frame, people stay in place.
-void carryPeople(const FlowTracker& flow, const SceneGrid& grid,
-                 std::vector<TrackedPerson>& people);
+void carryPeople(const FlowImages& flow, const SceneGrid& grid, std::vector<TrackedPerson>& people);
 
 /// Replaces carried people by the new detections that continue them; the other detections are added
 /// where `may_be_new` (one for each detection) allows it. A detection continues the carried person

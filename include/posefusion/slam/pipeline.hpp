@@ -25,14 +25,16 @@ struct SeenFrame {
   RgbdFrame frame;
   BlurScore blur;
   People people;
+  SparseFlow flow;  ///< from the last sharp frame; empty for a frame that is not mapped
+  FlowImages flow_images;
   double gate_ms = 0;
   double pose_ms = 0;
+  double flow_ms = 0;
 };
 
 /// A frame after the whole chain.
 struct ProcessedFrame {
   SeenFrame seen;
-  SparseFlow flow;  ///< from the last sharp frame; empty for a frame that is not mapped
   Segmentation segmentation;
   double segmentation_ms = 0;
   FrameStatus status;
@@ -50,7 +52,7 @@ class Pipeline {
  public:
   Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector);
 
-  /// Rectification, blur gate, registration of colour, pose detection.
+  /// Rectification, blur gate, registration of colour, pose detection, optical flow.
   SeenFrame see(const RgbdFrame& frame);
 
   /// Segmentation against the current model, tracking, fusion. A blurred frame is reported as such.
