@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The output of scripts/bench: rows of figures with their bars."""
+import datetime
 import os
 import pathlib
 import platform
@@ -44,13 +45,36 @@ class Report:
         print(f"{row[0]:<66} {row[1]:>24} {row[2]:>10}  {mark}", flush=True)
 
 
-def write_markdown(path, rows):
-    """The table, below the text that the file begins with (all before its first "Printed by")."""
-    cores, machine = os.cpu_count(), platform.machine()
-    text = path.read_text().split("Printed by")[0].rstrip() if path.exists() else ""
-    lines = [text, ""] if text else []
-    lines += [f"Printed by `scripts/bench` on {cores} cores ({machine}).", "",
-             "| what | measured | bar | |", "|---|---|---|---|"]
+def origin():
+    """Which build was measured when and on what, for the heading of a table."""
+    root = pathlib.Path(__file__).resolve().parent.parent
+    commit = call("git", "-C", root, "describe", "--always", "--dirty").strip()
+    models = [line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+              if line.startswith("model name")]
+    return f"Commit {commit}, {datetime.date.today()}, {os.cpu_count()} cores of {(models or [platform.machine()])[0]}."
+
+
+RESULTS = "## Results"
+
+
+def tables_of(text):
+    """{name of a part: its heading's text and table} of the results in a file."""
+    parts = text.partition(RESULTS + "\n")[2].split("\n### ")[1:]
+    return {part.partition("\n")[0]: part.partition("\n")[2].strip() for part in parts}
+
+
+def write_markdown(path, rows_of_parts, measured):
+    """Tables of the parts that were measured, in a file whose other parts, and the text before the results, stay as they
+    are. `rows_of_parts`: {name: rows} of all parts in their order, none for one that was not measured."""
+    text = path.read_text() if path.exists() else ""
+    tables = tables_of(text)
     marks = {True: "ok", False: "missed", None: ""}
-    lines += [f"| {what} | {value} | {bar} | {marks[kept]} |" for what, value, bar, kept in rows]
-    path.write_text("\n".join(lines) + "\n")
+    for name, rows in rows_of_parts.items():
+        if not rows:
+            continue
+        lines = [measured, "", "| what | measured | bar | |", "|---|---|---|---|"]
+        lines += [f"| {what} | {value} | {bar} | {marks[kept]} |" for what, value, bar, kept in rows]
+        tables[name] = "\n".join(lines)
+    before = text.partition(RESULTS + "\n")[0].rstrip()
+    sections = [f"### {name}\n\n{tables[name]}" for name in rows_of_parts if name in tables]
+    path.write_text("\n\n".join(([before] if before else []) + [RESULTS] + sections) + "\n")

@@ -21,18 +21,21 @@ class Bench(unittest.TestCase):
         self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("walking_xyz", ["b"]))
         self.assertNotEqual(fingerprint("walking_xyz", ["a"]), fingerprint("loop_room", ["a"]))
 
-    def test_the_table_keeps_the_text_before_it(self):
+    def test_tables_replace_those_of_their_own_parts_alone(self):
         from bench_report import write_markdown
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "b.md")
-            path.write_text("# Head\n\nPrinted by long ago\n| old |\n")
-            for what in ("one", "two"):
-                write_markdown(path, [(what, "1 m", "<= 2", True)])
+            path.write_text("# Head\n\nText.\n")
+            write_markdown(path, {"walk": [("one", "1 m", "<= 2", True)], "gate": None}, "Commit 1.")
+            write_markdown(path, {"walk": None, "gate": [("two", "3 m", "<= 2", False)]}, "Commit 2.")
+            walk = "### walk\n\nCommit 1.\n\n| what | measured | bar | |\n|---|---|---|---|\n| one | 1 m | <= 2 | ok |\n"
+            gate = "\n### gate\n\nCommit 2.\n\n| what | measured | bar | |\n|---|---|---|---|\n| two | 3 m | <= 2 | missed |\n"
+            self.assertEqual(path.read_text(), "# Head\n\nText.\n\n## Results\n\n" + walk + gate)
+            write_markdown(path, {"walk": [("three", "1 m", "", None)], "gate": None}, "Commit 3.")
             text = path.read_text()
-            self.assertTrue(text.startswith("# Head\n\nPrinted by `scripts/bench`"), text)
-            self.assertIn("| two | 1 m | <= 2 | ok |", text)
-            self.assertNotIn("old", text)
             self.assertNotIn("one", text)
+            self.assertIn("Commit 3.", text)
+            self.assertTrue(text.endswith(gate), text)
 
     def test_live_figures_stand_beside_final_ones(self):
         from bench_runs import Runs

@@ -143,8 +143,9 @@ class SegmenterNodelet : public ChainNodelet {
     const pf::ModelView model = view ? fromMessage(view) : pf::ModelView();
     const pf::RgbdFrame frame = toFrame(color, depth, toCamera(*info, false));
     const pf::SparseFlow& flow = flow_.advance(frame);
-    const pf::Segmentation result = segmenter_->segment(
-        frame, flow_.images(), fromMessage(*people), model.empty() ? nullptr : &model, upOf(header));
+    const pf::Segmentation result =
+        segmenter_->segment(frame, flow_.images(), fromMessage(*people),
+                            model.empty() ? nullptr : &model, upOf(header));
     last_ = header.stamp;
     publish(frame, result, flow, depth, header);
     if (model.T_world_map && model.fragment == pf::kFirstFragment) {
