@@ -29,6 +29,31 @@ class People(Recordings):
         self.simulated_people()
         self.people_in_map()
 
+    def near(self):
+        """Three people as near as 0.6 m, cut by the border: semi-synthetic."""
+        data = self.options.data / "kitchen_near"
+        folder, summary = self.run("kitchen_near", data, *EMBEDDED, "--save-masks")
+        self.row("kitchen_near, embedded, mean IoU",
+                 self.evaluate("masks", data, folder)["frames_over_2_percent"]["mean_iou"], "", 0.88, most=False,
+                 digits=3)
+        self.among_people("kitchen_near, embedded", folder, summary, data, ate=0.022, posed=98, on_people=0.5)
+
+    def crowd(self):
+        """Ten people, who nearly cover the view."""
+        for seed in self.options.seeds:
+            data = self.simulated("crowd", seed)
+            folder, summary = self.run(f"crowd_{seed}_embedded", data, *EMBEDDED)
+            self.among_people(f"crowd {seed}, embedded", folder, summary, data, ate=None, posed=90, on_people=1.5)
+
+    def among_people(self, name, folder, summary, data, ate, posed, on_people):
+        self.ate_row(f"{name}, ATE RMSE", summary, ate)
+        self.wrong_rows(name, summary)
+        found = self.evaluate("run", folder, data)
+        seen = found["beside_people"]
+        self.row(f"{name}, of {seen['frames']} frames of which people leave a quarter, with a pose at the time",
+                 100 * seen["with_a_pose"] / seen["frames"] if seen["frames"] else None, "%", posed, most=False, digits=1)
+        self.row(f"{name}, stable surfels on people", 100 * found["people_in_map"]["part"], "%", on_people, digits=2)
+
     def people_of_kitchen(self, detector, arguments, iou, precision):
         name = f"kitchen_people, {detector}"
         data = self.options.data / "kitchen_people"
@@ -82,11 +107,10 @@ class People(Recordings):
             found = self.evaluate("masks", self.simulated("walking_xyz", 1, 5), chair)
             self.row(f"walking_xyz, first 5 s, {detector}, mean IoU",
                      found["frames_over_2_percent"]["mean_iou"], "", 0.80, most=False, digits=3)
-            for scenario, seconds in (("walking_xyz", 30), ("crowd", None)):
-                folder = self.masked_run(scenario, 1, seconds, detector, arguments)
-                in_map = self.evaluate("run", folder, self.simulated(scenario, 1, seconds))
-                self.row(f"{scenario}, {detector}, confident surfels on people",
-                         100 * in_map["people_in_map"]["part"], "%", 1.5, digits=2)
+            folder = self.masked_run("walking_xyz", 1, 30, detector, arguments)
+            in_map = self.evaluate("run", folder, self.simulated("walking_xyz", 1, 30))
+            self.row(f"walking_xyz, {detector}, confident surfels on people",
+                     100 * in_map["people_in_map"]["part"], "%", 1.5, digits=2)
 
     def people_speed(self):
         """In turns: the chain with either detector, and the network of an older build."""

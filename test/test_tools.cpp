@@ -49,6 +49,8 @@ TEST_F(ToolsTest, RunWritesEverythingAndIsTheSameForAnyNumberOfThreads) {
             0);
   const auto check = nlohmann::json::parse(said);
   EXPECT_EQ(check.at("people_in_map").at("frames_with_masks"), kFrames);
+  EXPECT_EQ(check.at("beside_people").at("frames"), kFrames);
+  EXPECT_EQ(check.at("beside_people").at("with_a_pose"), kFrames);
   EXPECT_LT(check.at("depth").at("median_abs_difference_m").get<double>(), 0.02);
 
   ASSERT_EQ(run({"surface", one, sequence(), "--json"}, "posefusion_evaluate"), 0) << said;

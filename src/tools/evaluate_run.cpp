@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/mask_folders.hpp"
 #include "posefusion_ros/bag_source.hpp"
+
+namespace fs = std::filesystem;
 
 namespace pf {
 namespace {
@@ -63,8 +66,28 @@ class Undistorter {
   Rectifier rectifier_;
 };
 
-void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t masked_frames,
-                 bool json) {
+/// Frames with true masks that see enough beside the people, and how many of them have a pose at
+/// the time.
+struct ViewCheck {
+  static constexpr double kEnough = 0.25;  // part of the pixels with depth
+
+  std::size_t frames = 0, posed = 0;
+
+  void add(const RgbdFrame& frame, const cv::Mat& mask, bool has_pose) {
+    constexpr double kLeastDepth_m = 0.1, kMostDepth_m = 20.0;
+    depthInMetres(frame, kLeastDepth_m, kMostDepth_m, depth_m_);
+    depth_m_.setTo(0, mask != 0);
+    if (cv::countNonZero(depth_m_) < kEnough * static_cast<double>(depth_m_.total())) return;
+    ++frames;
+    posed += has_pose ? 1 : 0;
+  }
+
+ private:
+  cv::Mat depth_m_;
+};
+
+void printAnswer(const DepthCheck& depth, const PeopleCheck& people, const ViewCheck& view,
+                 std::size_t masked_frames, bool json) {
   if (json) {
     nlohmann::ordered_json out;
     out["depth"] = {{"frames", depth.frames()},
@@ -75,6 +98,9 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t
                             {"surfels", people.surfels()},
                             {"on_people", people.onPeople()},
                             {"part", people.part()}};
+    out["beside_people"] = {{"least_part_of_view", ViewCheck::kEnough},
+                            {"frames", view.frames},
+                            {"with_a_pose", view.posed}};
     std::cout << out.dump(2) << "\n";
     return;
   }
@@ -85,6 +111,8 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, std::size_t
   } else {
     std::printf("surfels on people       %.2f %% (%zu of %zu; %zu frames with true masks)\n",
                 100 * people.part(), people.onPeople(), people.surfels(), masked_frames);
+    std::printf("poses beside people     %zu of the %zu frames of which people leave %.0f %%\n",
+                view.posed, view.frames, 100 * ViewCheck::kEnough);
   }
 }
 
@@ -98,27 +126,32 @@ void evaluateRun(const RunQuestion& q) {
   reading.camera_file = q.camera;
   const auto source = posefusion_ros::openInput(q.input, reading);
   const Poses poses = posesOf(estimate);
+  const std::string live_file = q.run + "/trajectory_live.txt";
+  const Poses live = fs::exists(live_file) ? posesOf(loadTrajectory(live_file)) : poses;
   const Poses true_poses =
       truePosesInMap(q.truth.empty() ? source->truth() : loadTrajectory(q.truth), estimate);
   const std::string masks = q.masks.empty() ? q.input + "/mask" : q.masks;
 
   DepthCheck depth(map);
   PeopleCheck people(surfels);
+  ViewCheck view;
   Undistorter undistorter;
   std::size_t masked_frames = 0;
   for (std::size_t i = 0; auto next = source->next(); ++i) {
     RgbdFrame& frame = next->frame;
-    const auto pose = poses.find(frame.stamp_ns);
-    if (!next->defect.empty() || pose == poses.end()) continue;
+    if (!next->defect.empty()) continue;
     cv::Mat mask = loadMask(masks, frame.stamp_ns);
     undistorter.apply(frame, mask);
+    if (!mask.empty()) view.add(frame, mask, live.count(frame.stamp_ns) > 0);
+    const auto pose = poses.find(frame.stamp_ns);
+    if (pose == poses.end()) continue;
     if (i >= q.first_frame && i < q.last_frame) depth.add(frame, mask, pose->second);
     const auto true_pose = true_poses.find(frame.stamp_ns);
     if (mask.empty() || true_pose == true_poses.end()) continue;
     people.add(frame, mask, true_pose->second);
     ++masked_frames;
   }
-  printAnswer(depth, people, masked_frames, q.json);
+  printAnswer(depth, people, view, masked_frames, q.json);
 }
 
 }  // namespace pf
