@@ -33,13 +33,16 @@ class Room {
   /// Frames until `end_s`; the camera is at (x, 0, 0) with x = camera(time).
   void runUntil(
       double end_s, const Way& camera = [](double) { return 0.0; }) {
-    for (; 1e-9 * static_cast<double>(stamp_ns_) < end_s; stamp_ns_ += kStep_ns) {
+    for (; 1e-9 * static_cast<double>(stamp_ns_) < end_s; stamp_ns_ += frames_ * kStep_ns) {
       const double now_s = 1e-9 * static_cast<double>(stamp_ns_);
       see(box_(now_s), camera(now_s));
     }
   }
 
   void lose() { objects_.reset(); }
+
+  /// From now on one of so many frames is seen.
+  void seeOneOf(int frames) { frames_ = frames; }
 
   const std::vector<MovingObject>& objects() const { return found_; }
   double maskedPart() const {
@@ -74,8 +77,7 @@ class Room {
     compareWithModel(grid_, view_, view_.T_map_camera.inverse() * T_map_camera, DepthSensor(),
                      background);
     const std::vector<std::uint8_t> no_people(static_cast<std::size_t>(grid_.size()), 0);
-    found_ = objects_.find(
-        {grid_, kCamera, view_, T_map_camera, background, no_people, stamp_ns_, 1.0F});
+    found_ = objects_.find({grid_, kCamera, view_, T_map_camera, background, no_people, stamp_ns_});
     worst_ = std::max(worst_, maskedPart());
     view_.T_map_camera = T_map_camera;  // it was tracked
     view_.stamp_ns = stamp_ns_;
@@ -93,6 +95,7 @@ class Room {
   SceneGrid grid_;
   std::vector<MovingObject> found_;
   std::int64_t stamp_ns_ = kStep_ns;
+  int frames_ = 1;
   std::mt19937 random_{7};
   double boxPart_ = 0, worst_ = 0;
 };
@@ -133,6 +136,17 @@ TEST(MovingObjects, WhatStopsIsStaticSoonerThanTheOldestMomentForgetsIt) {
     room.runUntil(2.2);
     ASSERT_EQ(room.objects().size(), 1U) << speed_m_s;
     room.runUntil(3.0);
+    EXPECT_EQ(room.maskedPart(), 0.0) << speed_m_s;
+  }
+}
+
+TEST(MovingObjects, WhatStopsIsStaticAsSoonWhereMostFramesAreBlurred) {
+  for (const double speed_m_s : {0.25, 1.0}) {
+    Room room(moving(-1.0, speed_m_s, 1.0, 2.2));
+    room.runUntil(2.2);
+    ASSERT_EQ(room.objects().size(), 1U) << speed_m_s;
+    room.seeOneOf(4);
+    room.runUntil(3.1);
     EXPECT_EQ(room.maskedPart(), 0.0) << speed_m_s;
   }
 }

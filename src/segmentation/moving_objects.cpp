@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "posefusion/core/pace.hpp"
 #include "posefusion/core/stamps.hpp"
 
 namespace pf {
@@ -32,6 +33,12 @@ constexpr double kUnseen_s = 0.5;       // until an object that is not found is 
 constexpr float kCarriedOff_m = 0.15F;  // of an object's depth from where it was expected
 constexpr float kEdgeSigmas = 3.0F;
 constexpr float kEdgeSlope = 2.0F;  // depth per distance across, of neighbours on one surface
+
+/// What a frame's evidence counts for, in frames at 30 Hz: it is of the time since the frame
+/// before, blurred ones left out, as far as the nearest moment reaches back.
+double weightOf(double elapsed_s) {
+  return Pace{std::min(elapsed_s, SeenBefore::kAges_s.front())}.worth();
+}
 
 }  // namespace
 
@@ -216,7 +223,7 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
     }
     is_taken[best] = true;
     object.unseen_s = 0;
-    object.odds = std::min(kMostOdds, object.odds + scene.worth * evidenceOf(pieces[best]));
+    object.odds = std::min(kMostOdds, object.odds + weightOf(elapsed_s) * evidenceOf(pieces[best]));
     place(scene, elapsed_s, pieces[best], object);
   }
   const auto isOver = [](const Followed& o) { return o.odds <= 0 || o.unseen_s > kUnseen_s; };
@@ -226,7 +233,7 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
     if (is_taken[i] || pieces[i].seeds < kLeastSeeds || evidence <= 0) continue;
     Followed object;
     object.object.id = ++last_id_;
-    object.odds = scene.worth * evidence;
+    object.odds = weightOf(elapsed_s) * evidence;
     place(scene, 0, pieces[i], object);
     objects_.push_back(std::move(object));
   }

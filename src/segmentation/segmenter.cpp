@@ -66,7 +66,7 @@ void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
   if (view == nullptr || !config_.moving_objects) return s.objects.reset();
   const std::vector<MovingObject> objects =
       s.objects.find({s.evidence.grid, frame.camera, *view, T_uncorrected_camera,
-                      s.evidence.background, s.labels, frame.stamp_ns, s.worth});
+                      s.evidence.background, s.labels, frame.stamp_ns});
   for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
   reportObjects(*view, objects, result);
 }

@@ -19,7 +19,6 @@ struct MovingScene {
   const std::vector<Background>& background;      ///< how the cells agree with the map
   const std::vector<std::uint8_t>& is_person;     ///< cells that are taken out anyway
   std::int64_t stamp_ns;
-  float worth;  ///< of the frame, see Pace
 };
 
 /// Finds moving objects where depth contradicts the map and the frames of the last second: pieces
