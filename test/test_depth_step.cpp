@@ -82,6 +82,70 @@ TEST(DepthStep, bringsSurfelsToWhereTheirKeyframesSeeThemNow) {
   EXPECT_LT(walls.worst_m(), 1e-5);
 }
 
+/// A wall 4 m from one keyframe and 1.6 m beside the axis of another one, 2 m from it, as a mean of
+/// what both see of it.
+struct WallSeenTwice {
+  Eigen::Isometry3d T_far = Eigen::Isometry3d::Identity(), T_near = T_far;
+  SurfelMap map{MapConfig()};
+
+  explicit WallSeenTwice(const DepthField& error) {
+    T_near.translation() = Eigen::Vector3d(0.6, 0.2, 2.0);
+    for (int i = 0; i < 60; ++i) map.advance();
+    SurfelArrays s;
+    for (double y = -0.3; y < 0.5; y += 0.05) {
+      for (double x = 0.0; x < 1.2; x += 0.05) add({x, y, 4.0}, error, s);
+    }
+    map.add(s);
+  }
+
+  static Eigen::Vector3d seenFrom(const Eigen::Isometry3d& T, const Eigen::Vector3d& point,
+                                  const DepthField& error) {
+    const PinholeCamera camera = test::roomCamera(kWidth);
+    const Eigen::Vector3d p = T.inverse() * point;
+    const Eigen::Vector2d pixel = camera.project(p);
+    const double z = error.inverse().corrected(p.z(), (pixel.x() + 0.5) / camera.width,
+                                               (pixel.y() + 0.5) / camera.height);
+    return T * (p * (z / p.z()));
+  }
+
+  void add(const Eigen::Vector3d& point, const DepthField& error, SurfelArrays& s) const {
+    constexpr double kFar = 1.0 / 256, kNear = 1.0 / 16;  // 1 / variance, as fusion weighs
+    const Eigen::Vector3d mean =
+        (kFar * seenFrom(T_far, point, error) + kNear * seenFrom(T_near, point, error)) /
+        (kFar + kNear);
+    s.resize(s.size() + 1);
+    const std::size_t i = s.size() - 1;
+    s.x[i] = static_cast<float>(mean.x());
+    s.y[i] = static_cast<float>(mean.y());
+    s.z[i] = static_cast<float>(mean.z());
+    s.nx[i] = s.ny[i] = 0.0F;
+    s.nz[i] = -1.0F;
+    s.radius[i] = 0.02F;
+    s.odds[i] = static_odds::kMost;
+    s.created[i] = 20;
+    s.seen[i] = 55;
+  }
+
+  double worst_m() const {
+    double worst = 0;
+    map.forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
+      worst = std::max(worst, std::abs(s.z[i] - 4.0));
+    });
+    return worst;
+  }
+};
+
+TEST(DepthStep, goesByAllKeyframesThatSawASurfelAsFusionWeighsThem) {
+  WallSeenTwice wall(test::roomField());
+  const double before_m = wall.worst_m();
+  EXPECT_GT(before_m, 0.02);
+  correctDepth(wall.map, {test::roomField(),
+                          test::roomCamera(kWidth),
+                          {keyframe(0, 0, wall.T_far, kFirstFragment),
+                           keyframe(1, 50, wall.T_near, kFirstFragment)}});
+  EXPECT_LT(wall.worst_m(), 0.1 * before_m);
+}
+
 TEST(DepthStep, andItsInverseLeaveEverythingWhereItWas) {
   TwoWalls walls{DepthField()};
   const SurfelArrays before = walls.map.collect();

@@ -2,6 +2,7 @@
 #include "posefusion/map/depth_step.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 
@@ -10,29 +11,46 @@ namespace {
 
 constexpr double kNearest_m = 0.1;  // before the camera; nearer nothing is measured
 
+// Of the keyframes that may have seen a surfel so many are asked, and of these those that know it
+// by more than this part of what the best one does.
+constexpr std::size_t kMostViews = 4;
+constexpr double kLeastPart = 0.05;
+
+/// A keyframe as a camera.
+struct View {
+  std::int32_t map_frame;
+  Eigen::Isometry3d T_map_camera, T_camera_map;
+};
+
 /// The keyframes of each fragment by the frame that they were fused in.
-class Origins {
+class Views {
  public:
-  explicit Origins(const std::vector<Keyframe>& keyframes) {
-    for (const Keyframe& k : keyframes) of_[k.fragment].push_back(&k);
+  explicit Views(const std::vector<Keyframe>& keyframes) {
+    for (const Keyframe& k : keyframes) {
+      of_[k.fragment].push_back({k.map_frame, k.T_map_camera, k.T_map_camera.inverse()});
+    }
     for (auto& [fragment, list] : of_) {
       std::stable_sort(list.begin(), list.end(),
-                       [](auto* a, auto* b) { return a->map_frame < b->map_frame; });
+                       [](const View& a, const View& b) { return a.map_frame < b.map_frame; });
     }
   }
 
-  const Keyframe* at(int fragment, std::int32_t map_frame) const {
+  /// By map_frame; nullptr: the fragment has none.
+  const std::vector<View>* of(int fragment) const {
     const auto found = of_.find(fragment);
-    if (found == of_.end()) return nullptr;
-    const auto& list = found->second;
+    return found == of_.end() ? nullptr : &found->second;
+  }
+
+  /// The last one that is no later than a frame, or the first.
+  static std::size_t lastAt(const std::vector<View>& views, std::int32_t map_frame) {
     const auto after =
-        std::upper_bound(list.begin(), list.end(), map_frame,
-                         [](std::int32_t frame, auto* k) { return frame < k->map_frame; });
-    return after == list.begin() ? list.front() : *(after - 1);
+        std::upper_bound(views.begin(), views.end(), map_frame,
+                         [](std::int32_t frame, const View& v) { return frame < v.map_frame; });
+    return after == views.begin() ? 0 : static_cast<std::size_t>(after - views.begin()) - 1;
   }
 
  private:
-  std::map<int, std::vector<const Keyframe*>> of_;
+  std::map<int, std::vector<View>> of_;
 };
 
 /// How a field moves what one camera sees.
@@ -81,31 +99,78 @@ float mostWeight(const DepthStep& step, double z_m) {
                     : std::numeric_limits<float>::max();
 }
 
-void correct(SurfelArrays& s, int fragment, const DepthStep& step, const Origins& origins,
-             const RayMotion& motion) {
-  const Keyframe* keyframe = nullptr;
-  Eigen::Isometry3d T_camera_map = Eigen::Isometry3d::Identity();
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const Keyframe* origin = origins.at(fragment, s.created[i]);
-    if (origin == nullptr) return;
-    if (origin != keyframe) T_camera_map = origin->T_map_camera.inverse();
-    keyframe = origin;
-    Eigen::Vector3d p = T_camera_map * Eigen::Vector3d(s.x[i], s.y[i], s.z[i]);
-    Eigen::Vector3d n = T_camera_map.linear() * Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i]);
-    const double factor = motion.apply(p, n);
-    if (factor == 0) continue;
-    const Eigen::Vector3f at = (origin->T_map_camera * p).cast<float>();
-    const Eigen::Vector3f normal = (origin->T_map_camera.linear() * n).cast<float>();
-    s.x[i] = at.x();
-    s.y[i] = at.y();
-    s.z[i] = at.z();
-    s.nx[i] = normal.x();
-    s.ny[i] = normal.y();
-    s.nz[i] = normal.z();
-    s.radius[i] *= static_cast<float>(factor);
-    s.weight[i] = std::min(s.weight[i], mostWeight(step, p.z()));
+/// A surfel from one keyframe.
+struct Seen {
+  const View* view;
+  Eigen::Vector3d p, n;  // in its camera frame
+  double weight;         // 0: not seen
+};
+
+/// A surfel, and what all that saw it make of it.
+class SurfelStep {
+ public:
+  SurfelStep(const DepthStep& step, const RayMotion& motion) : step_(step), motion_(motion) {}
+
+  void correct(const std::vector<View>& views, SurfelArrays& s, std::size_t i) const {
+    std::array<Seen, kMostViews> seen;
+    const std::size_t count = look(views, s, i, seen);
+    double best = 0, sum = 0, factor = 0, nearest_m = 0;
+    for (std::size_t k = 0; k < count; ++k) best = std::max(best, seen[k].weight);
+    Eigen::Vector3d at = Eigen::Vector3d::Zero(), normal = at;
+    for (std::size_t k = 0; k < count; ++k) {
+      Seen& one = seen[k];
+      if (one.weight <= kLeastPart * best) continue;
+      const double by = motion_.apply(one.p, one.n);
+      if (by == 0) continue;
+      if (one.weight == best) nearest_m = one.p.z();
+      sum += one.weight;
+      factor += one.weight * by;
+      at += one.weight * (one.view->T_map_camera * one.p);
+      normal += one.weight * (one.view->T_map_camera.linear() * one.n);
+    }
+    if (sum == 0) return;
+    at /= sum;
+    normal.normalize();
+    s.x[i] = static_cast<float>(at.x());
+    s.y[i] = static_cast<float>(at.y());
+    s.z[i] = static_cast<float>(at.z());
+    s.nx[i] = static_cast<float>(normal.x());
+    s.ny[i] = static_cast<float>(normal.y());
+    s.nz[i] = static_cast<float>(normal.z());
+    s.radius[i] *= static_cast<float>(factor / sum);
+    s.weight[i] = std::min(s.weight[i], mostWeight(step_, nearest_m));
   }
-}
+
+ private:
+  /// From keyframes spread over the time in which it was seen. That of its beginning counts also
+  /// where it lies outside of its picture: frames after it have seen it.
+  std::size_t look(const std::vector<View>& views, const SurfelArrays& s, std::size_t i,
+                   std::array<Seen, kMostViews>& seen) const {
+    const std::size_t first = Views::lastAt(views, s.created[i]);
+    const std::size_t last = std::max(first, Views::lastAt(views, s.seen[i]));
+    const std::size_t count = std::min(kMostViews, last - first + 1);
+    const Eigen::Vector3d at(s.x[i], s.y[i], s.z[i]), normal(s.nx[i], s.ny[i], s.nz[i]);
+    bool any = false;
+    for (std::size_t k = 0; k < count; ++k) {
+      const View& view = views[count == 1 ? first : first + k * (last - first) / (count - 1)];
+      const Eigen::Vector3d p = view.T_camera_map * at, n = view.T_camera_map.linear() * normal;
+      seen[k] = {&view, p, n, isSeen(p, n) ? 1.0 / (p.z() * p.z() * p.z() * p.z()) : 0.0};
+      any |= seen[k].weight > 0;
+    }
+    if (!any) seen[0].weight = 1.0;
+    return count;
+  }
+
+  bool isSeen(const Eigen::Vector3d& p, const Eigen::Vector3d& n) const {
+    if (p.z() < kNearest_m || n.dot(p) >= 0) return false;
+    const Eigen::Vector2d pixel = step_.camera.project(p);
+    return pixel.x() > -0.5 && pixel.y() > -0.5 && pixel.x() < step_.camera.width - 0.5 &&
+           pixel.y() < step_.camera.height - 0.5;
+  }
+
+  const DepthStep& step_;
+  const RayMotion& motion_;
+};
 
 }  // namespace
 
@@ -114,11 +179,14 @@ void correctDepth(SurfelMap& map, const DepthStep& step) {
 }
 
 void correctDepth(SurfelMap& map, const DepthStep& step, const std::vector<std::uint32_t>& blocks) {
-  const Origins origins(step.keyframes);
+  const Views views(step.keyframes);
   const RayMotion motion(step.field, step.camera);
+  const SurfelStep surfel(step, motion);
   map.move({[&](const SurfelBlock& block) { return block.surfels.size() > 0; },
             [&](SurfelArrays& surfels, int fragment) {
-              correct(surfels, fragment, step, origins, motion);
+              const std::vector<View>* of = views.of(fragment);
+              if (of == nullptr) return;
+              for (std::size_t i = 0; i < surfels.size(); ++i) surfel.correct(*of, surfels, i);
             }},
            blocks);
 }

@@ -12,10 +12,9 @@
 
 namespace pf {
 
-/// What is newly known of the depth camera, as it moves what its depth has made: all hangs on the
-/// keyframe before it and is moved along the rays of that camera. Surfels are means of many frames,
-/// so that this is right as far as the field hardly differs between where the keyframe and the
-/// others saw a surface.
+/// What is newly known of the depth camera, as it moves what its depth has made. Surfels are means
+/// of many frames, near ones above all: each is moved along the rays of the keyframes that saw it
+/// since it was made, as far as each of them counts.
 struct DepthStep {
   DepthField field;  ///< added to what depth was corrected by (1/m)
   PinholeCamera camera;
@@ -25,8 +24,8 @@ struct DepthStep {
 };
 
 /// Moves each surfel, position, normal and radius, and lowers its weight to what is then known of
-/// it, by the keyframe of its fragment that was taken
-/// last when it was made (the first, for what is older). Behind a camera, or without a keyframe, it
+/// it, by some of the keyframes of its fragment from the last one when it was made (the first, for
+/// what is older) to the last one when it was seen. Behind their cameras, or without a keyframe, it
 /// stays. The result does not depend on the number of threads.
 void correctDepth(SurfelMap& map, const DepthStep& step);
 
