@@ -16,18 +16,20 @@ constexpr double kNearest_m = 0.1;  // before the camera; nearer nothing is meas
 constexpr std::size_t kMostViews = 4;
 constexpr double kLeastPart = 0.05;
 
-/// A keyframe as a camera.
+/// A keyframe as a camera: where it is, and where it was.
 struct View {
   std::int32_t map_frame;
-  Eigen::Isometry3d T_map_camera, T_camera_map;
+  Eigen::Isometry3d T_map_camera, T_camera_before;
 };
 
 /// The keyframes of each fragment by the frame that they were fused in.
 class Views {
  public:
-  explicit Views(const std::vector<Keyframe>& keyframes) {
-    for (const Keyframe& k : keyframes) {
-      of_[k.fragment].push_back({k.map_frame, k.T_map_camera, k.T_map_camera.inverse()});
+  explicit Views(const DepthStep& step) {
+    for (const Keyframe& k : step.keyframes) {
+      const Eigen::Isometry3d T_now_before = step.motion.at(k.map_frame, k.fragment);
+      of_[k.fragment].push_back(
+          {k.map_frame, k.T_map_camera, k.T_map_camera.inverse() * T_now_before});
     }
     for (auto& [fragment, list] : of_) {
       std::stable_sort(list.begin(), list.end(),
@@ -61,9 +63,9 @@ class RayMotion {
 
   /// Point and normal in the camera frame. The plane N . X = 1 at the point has the inverse depth
   /// N . (x, y, 1) along the ray (x, y, 1); the field is added to that, and so, to first order, its
-  /// slopes to N. Returns the factor of the depth; 0: nothing has moved.
+  /// slopes to N. Returns the factor of the depth; 1: it stays.
   double apply(Eigen::Vector3d& p, Eigen::Vector3d& n) const {
-    if (p.z() < kNearest_m) return 0;
+    if (p.z() < kNearest_m) return 1;
     const double x = p.x() / p.z(), y = p.y() / p.z();
     const FieldWeights w = field_.weights((camera_.fx * x + camera_.cx + 0.5) / camera_.width,
                                           (camera_.fy * y + camera_.cy + 0.5) / camera_.height);
@@ -74,7 +76,7 @@ class RayMotion {
       by_y += w.by_y[k] * node * camera_.fy / camera_.height;
     }
     const double d = field_.at(w), factor = 1.0 / (1.0 + p.z() * d);
-    if (!(factor > 0)) return 0;
+    if (!(factor > 0)) return 1;
     const double distance = n.dot(p);
     if (distance != 0) {
       const Eigen::Vector3d N = n / distance;
@@ -121,14 +123,12 @@ class SurfelStep {
       Seen& one = seen[k];
       if (one.weight <= kLeastPart * best) continue;
       const double by = motion_.apply(one.p, one.n);
-      if (by == 0) continue;
       if (one.weight == best) nearest_m = one.p.z();
       sum += one.weight;
       factor += one.weight * by;
       at += one.weight * (one.view->T_map_camera * one.p);
       normal += one.weight * (one.view->T_map_camera.linear() * one.n);
     }
-    if (sum == 0) return;
     at /= sum;
     normal.normalize();
     s.x[i] = static_cast<float>(at.x());
@@ -153,7 +153,8 @@ class SurfelStep {
     bool any = false;
     for (std::size_t k = 0; k < count; ++k) {
       const View& view = views[count == 1 ? first : first + k * (last - first) / (count - 1)];
-      const Eigen::Vector3d p = view.T_camera_map * at, n = view.T_camera_map.linear() * normal;
+      const Eigen::Vector3d p = view.T_camera_before * at,
+                            n = view.T_camera_before.linear() * normal;
       seen[k] = {&view, p, n, isSeen(p, n) ? 1.0 / (p.z() * p.z() * p.z() * p.z()) : 0.0};
       any |= seen[k].weight > 0;
     }
@@ -179,7 +180,7 @@ void correctDepth(SurfelMap& map, const DepthStep& step) {
 }
 
 void correctDepth(SurfelMap& map, const DepthStep& step, const std::vector<std::uint32_t>& blocks) {
-  const Views views(step.keyframes);
+  const Views views(step);
   const RayMotion motion(step.field, step.camera);
   const SurfelStep surfel(step, motion);
   map.move({[&](const SurfelBlock& block) { return block.surfels.size() > 0; },

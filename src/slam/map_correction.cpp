@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "posefusion/loop/dense_pairs.hpp"
 #include "posefusion/map/deform.hpp"
 #include "posefusion/map/layers.hpp"
 #include "posefusion/map/tears.hpp"
@@ -13,17 +14,32 @@ namespace {
 
 constexpr double kMillimetre = 1e-3;
 
-void improve(DepthImprovement& depth, CorrectedMap& made) {
-  DepthStep step = depth.step;
-  step.keyframes = made.graph.keyframes();
-  correctDepth(made.map, step);
-  made.graph.countCorrection();
-  const cv::Size small(step.camera.width, step.camera.height);
+void correctViews(DepthImprovement& depth) {
+  const cv::Size small(depth.step.camera.width, depth.step.camera.height);
   depth.corrector = DepthCorrector(depth.known.field, depth.frame_size);
   depth.distorter = DepthCorrector(depth.known.field.inverse(), small);
-  depth.of_frames = DepthCorrector(step.field, depth.frame_size);
-  depth.of_views = DepthCorrector(step.field, small);
+  depth.of_frames = DepthCorrector(depth.step.field, depth.frame_size);
+  depth.of_views = DepthCorrector(depth.step.field, small);
   for (KeyframeView& view : depth.views) correctDepth(depth.of_views, view);
+}
+
+/// Poses were tracked with the depth that was wrong: without theirs, surfels that several keyframes
+/// have seen would have no place that suits all.
+void improve(DepthImprovement& depth, CorrectedMap& made) {
+  correctViews(depth);
+  std::vector<const KeyframeView*> seen;
+  for (const KeyframeView& view : depth.views) seen.push_back(&view);
+  GraphResult result = made.graph.remeasure(
+      measurePairs(seen, made.graph.constraints(), depth.tracking, depth.step.sensor));
+  depth.moves_keyframes = result.accepted;
+  DepthStep step = depth.step;
+  step.keyframes = made.graph.keyframes();
+  step.motion = result.deformation;
+  correctDepth(made.map, step);
+  made.graph.countCorrection();
+  if (!result.accepted) return;
+  ++made.closed.accepted;
+  made.closed.deformations.push_back(std::move(result.deformation));
 }
 
 }  // namespace
@@ -62,6 +78,7 @@ CorrectedMap prepare(MapCorrection correction) {
     deform(made.map, deformation);
     joins |= deformation.joins();
   }
+  if (made.depth) improve(*made.depth, made);
   // What joins nothing and moves no keyframe so far lays no pass over another.
   made.lays_layers = joins || largestShiftM(keyframes, made.graph.keyframes()) > kLeastLayer_m;
   if (made.lays_layers) {
@@ -69,7 +86,6 @@ CorrectedMap prepare(MapCorrection correction) {
     made.swept.insert(made.swept.end(), torn.begin(), torn.end());
   }
   if (!made.swept.empty()) removeYoungerLayers(made.map, made.swept);
-  if (made.depth) improve(*made.depth, made);
   made.retired = made.graph.retire();
   return made;
 }

@@ -76,6 +76,7 @@ DepthImprovement Mapper::State::improvementBy(const DepthCalibration& learned) c
     depth.known.before_mm = calibration->before_mm;
   }
   depth.step = {learned.field, frame.camera, {}, sensorWith(depth.known), learned.left_per_m};
+  depth.tracking = config.tracking;
   depth.frame_size = {camera.width, camera.height};
   depth.views = views;
   return depth;

@@ -66,21 +66,30 @@ void Mapper::State::finishCorrection(CorrectedMap& corrected) {
   if (!is_correcting || corrected.number != correction_number) return;  // of a map that is gone
   is_correcting = false;
   if (!may_change) return;
-  const auto deformations = back_end.takeUp(std::move(corrected.graph), corrected.closed);
+  auto deformations = back_end.takeUp(std::move(corrected.graph), corrected.closed);
   const Places changed = map.takeUp(corrected.before, corrected.map);
   sortOut(corrected.swept);
   unswept = without(unswept, without(corrected.swept, changed));
+  std::optional<Deformation> by_depth;
+  if (corrected.depth && corrected.depth->moves_keyframes) {
+    by_depth = std::move(deformations.back());
+    deformations.pop_back();
+  }
   follow(deformations, changed, corrected.lays_layers);
-  if (corrected.depth) finishDepth(*corrected.depth, changed);
+  if (corrected.depth) finishDepth(*corrected.depth, by_depth, changed);
+  if (by_depth && corrected.lays_layers) mayBeDouble(changed);
   retireViews(corrected.retired);
   for (const auto& [step, version] : std::exchange(wanted_steps, {})) retrack(step, version);
 }
 
 /// The depth of all that is known is corrected, and from the next frame on that of frames.
-void Mapper::State::finishDepth(DepthImprovement& depth,
+/// `motion`: of the keyframes.
+void Mapper::State::finishDepth(DepthImprovement& depth, const std::optional<Deformation>& motion,
                                 const std::vector<std::uint32_t>& changed) {
   depth.step.keyframes = back_end.graph().keyframes();
+  if (motion) depth.step.motion = *motion;
   correctDepth(map, depth.step, changed);
+  if (motion) follow({*motion}, {}, false);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (i < depth.views.size()) {
       std::swap(views[i].depth_mm, depth.views[i].depth_mm);
@@ -116,6 +125,13 @@ void Mapper::State::retrack(const PoseConstraint& step, int version) {
   follow({deformation}, allBlocks(map), shift_m > kLeastLayer_m);
 }
 
+/// Layers are to be looked for in those of the blocks that were moved just now.
+void Mapper::State::mayBeDouble(const std::vector<std::uint32_t>& blocks) {
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(unswept),
+               [&](std::uint32_t block) { return map.blocks()[block].changed == map.frame(); });
+  sortOut(unswept);
+}
+
 /// `blocks`: that are still to be moved.
 void Mapper::State::follow(const std::vector<Deformation>& deformations,
                            const std::vector<std::uint32_t>& blocks, bool lays_layers) {
@@ -130,11 +146,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
     deform(map, deformation, blocks);
   }
   if (!moves) return;
-  if (lays_layers) {
-    std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(unswept),
-                 [&](std::uint32_t block) { return map.blocks()[block].changed == map.frame(); });
-    sortOut(unswept);
-  }
+  if (lays_layers) mayBeDouble(blocks);
   if (isPlaceKnown()) reckoning.correct(T_new_old);
   localiser.move(T_new_old, where);
   T_map_uncorrected = orthonormalised(T_new_old * T_map_uncorrected);

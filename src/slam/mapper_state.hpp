@@ -124,6 +124,7 @@ struct Mapper::State {
   void checkRobot(const Location& location, const std::optional<MapPose>& before,
                   std::int64_t before_ns);
   void fuse(const StaticFrame& input, const Location& location);
+  void mayBeDouble(const std::vector<std::uint32_t>& blocks);
   void follow(const Location& location, bool fill);
   void seek(const MapPose& last, Brightness brightness);
   void showFrom(const MapPose& pose, bool fill);
@@ -145,7 +146,8 @@ struct Mapper::State {
   std::vector<std::uint32_t> restingUnswept(int since_frame) const;
   std::optional<MapCorrection> beginCorrection(bool all);
   void finishCorrection(CorrectedMap& corrected);
-  void finishDepth(DepthImprovement& depth, const std::vector<std::uint32_t>& changed);
+  void finishDepth(DepthImprovement& depth, const std::optional<Deformation>& motion,
+                   const std::vector<std::uint32_t>& changed);
   void settle();
   void retireViews(const std::vector<int>& ids);
   void retrack(const PoseConstraint& step, int version);

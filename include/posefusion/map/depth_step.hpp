@@ -7,6 +7,7 @@
 #include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/depth_sensor.hpp"
+#include "posefusion/graph/deformation.hpp"
 #include "posefusion/graph/keyframe.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
@@ -14,13 +15,14 @@ namespace pf {
 
 /// What is newly known of the depth camera, as it moves what its depth has made. Surfels are means
 /// of many frames, near ones above all: each is moved along the rays of the keyframes that saw it
-/// since it was made, as far as each of them counts.
+/// since it was made, as far as each of them counts, from where they were to where they are.
 struct DepthStep {
   DepthField field;  ///< added to what depth was corrected by (1/m)
   PinholeCamera camera;
-  std::vector<Keyframe> keyframes;
+  std::vector<Keyframe> keyframes;  ///< where they are by the new depth
   DepthSensor sensor{};
   double left_per_m = 0;  ///< standard deviation of what is still not known (1/m)
+  Deformation motion{};   ///< that has taken the keyframes there
 };
 
 /// Moves each surfel, position, normal and radius, and lowers its weight to what is then known of

@@ -12,6 +12,7 @@
 #include "posefusion/loop/keyframe_pair.hpp"
 #include "posefusion/map/depth_step.hpp"
 #include "posefusion/map/surfel_map.hpp"
+#include "posefusion/tracking/config.hpp"
 
 namespace pf {
 
@@ -20,8 +21,12 @@ struct DepthImprovement {
   DepthCalibration learned;  ///< added to what depth was corrected by
   DepthCalibration known;    ///< both together
   DepthStep step;            ///< for surfels; its keyframes are those of the corrected graph
+  TrackingConfig tracking;   ///< by which the constraints are measured anew
   cv::Size frame_size;
   std::vector<KeyframeView> views;  ///< of the keyframes
+  /// The graph has followed: the last of the deformations is that of the new depth, which surfels
+  /// follow by the step.
+  bool moves_keyframes = false;
 
   /// By both together, there and back; by what is new, of frames and of views. Their tables are
   /// made when the correction is prepared. @{
