@@ -11,9 +11,7 @@ namespace {
 
 constexpr double kNearest_m = 0.1;  // before the camera; nearer nothing is measured
 
-// Of the keyframes that may have seen a surfel so many are asked, and of these those that know it
-// by more than this part of what the best one does.
-constexpr std::size_t kMostViews = 4;
+// What knows a surfel by less than this part of what the other keyframe does has no say.
 constexpr double kLeastPart = 0.05;
 
 /// A keyframe as a camera: where it is, and where it was.
@@ -108,19 +106,19 @@ struct Seen {
   double weight;         // 0: not seen
 };
 
-/// A surfel, and what all that saw it make of it.
+/// A surfel, and what the keyframes of its making and of its last support make of it. Of those
+/// between, only a drawing of the map could tell which saw it, and which looked at a wall before
+/// it.
 class SurfelStep {
  public:
   SurfelStep(const DepthStep& step, const RayMotion& motion) : step_(step), motion_(motion) {}
 
   void correct(const std::vector<View>& views, SurfelArrays& s, std::size_t i) const {
-    std::array<Seen, kMostViews> seen;
-    const std::size_t count = look(views, s, i, seen);
-    double best = 0, sum = 0, factor = 0, nearest_m = 0;
-    for (std::size_t k = 0; k < count; ++k) best = std::max(best, seen[k].weight);
+    std::array<Seen, 2> seen = look(views, s, i);
+    const double best = std::max(seen[0].weight, seen[1].weight);
+    double sum = 0, factor = 0, nearest_m = 0;
     Eigen::Vector3d at = Eigen::Vector3d::Zero(), normal = at;
-    for (std::size_t k = 0; k < count; ++k) {
-      Seen& one = seen[k];
+    for (Seen& one : seen) {
       if (one.weight <= kLeastPart * best) continue;
       const double by = motion_.apply(one.p, one.n);
       if (one.weight == best) nearest_m = one.p.z();
@@ -142,24 +140,22 @@ class SurfelStep {
   }
 
  private:
-  /// From keyframes spread over the time in which it was seen. That of its beginning counts also
-  /// where it lies outside of its picture: frames after it have seen it.
-  std::size_t look(const std::vector<View>& views, const SurfelArrays& s, std::size_t i,
-                   std::array<Seen, kMostViews>& seen) const {
+  /// The keyframe of its making counts also where the surfel lies outside of its picture: frames
+  /// after it have seen it.
+  std::array<Seen, 2> look(const std::vector<View>& views, const SurfelArrays& s,
+                           std::size_t i) const {
     const std::size_t first = Views::lastAt(views, s.created[i]);
     const std::size_t last = std::max(first, Views::lastAt(views, s.seen[i]));
-    const std::size_t count = std::min(kMostViews, last - first + 1);
     const Eigen::Vector3d at(s.x[i], s.y[i], s.z[i]), normal(s.nx[i], s.ny[i], s.nz[i]);
-    bool any = false;
-    for (std::size_t k = 0; k < count; ++k) {
-      const View& view = views[count == 1 ? first : first + k * (last - first) / (count - 1)];
-      const Eigen::Vector3d p = view.T_camera_before * at,
-                            n = view.T_camera_before.linear() * normal;
-      seen[k] = {&view, p, n, isSeen(p, n) ? 1.0 / (p.z() * p.z() * p.z() * p.z()) : 0.0};
-      any |= seen[k].weight > 0;
-    }
-    if (!any) seen[0].weight = 1.0;
-    return count;
+    const auto from = [&](const View& view) {
+      const Eigen::Vector3d p = view.T_camera_before * at;
+      const Eigen::Vector3d n = view.T_camera_before.linear() * normal;
+      return Seen{&view, p, n, isSeen(p, n) ? 1.0 / (p.z() * p.z() * p.z() * p.z()) : 0.0};
+    };
+    std::array<Seen, 2> seen = {from(views[first]), from(views[last])};
+    if (first == last) seen[1].weight = 0;
+    if (seen[0].weight + seen[1].weight == 0) seen[0].weight = 1;
+    return seen;
   }
 
   bool isSeen(const Eigen::Vector3d& p, const Eigen::Vector3d& n) const {

@@ -88,7 +88,7 @@ void Mapper::State::noteImproved(DepthImprovement& depth) {
   use(std::move(depth.known), std::move(depth.corrector), std::move(depth.distorter));
   is_calibration_loaded = false;
   ++depth_version;
-  closer_is_old = constraints_are_old = true;
+  closer_is_old = true;
   wanted.depth.reset();  // of depth as it was before
   wanted.remeasured.clear();
 }
