@@ -138,7 +138,7 @@ void Mapper::State::askForPlace() {
 
 std::optional<LoopQuestion> Mapper::takeQuestion() {
   State& s = *state_;
-  const bool waits = s.constraints_are_old || s.calibration_is_asked;
+  const bool waits = s.closer_is_old || s.constraints_are_old || s.calibration_is_asked;
   if (!s.question && waits && s.config.loop.enabled) s.tellCloser();
   return std::exchange(s.question, std::nullopt);
 }
