@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The output of scripts/bench: rows of figures with their bars."""
-import datetime
-import os
 import pathlib
-import platform
 import subprocess
 
 
@@ -43,15 +40,6 @@ class Report:
     def print_row(row):
         mark = {True: "ok", False: "MISSED", None: ""}[row[3]]
         print(f"{row[0]:<66} {row[1]:>24} {row[2]:>10}  {mark}", flush=True)
-
-
-def origin():
-    """Which build was measured when and on what, for the heading of a table."""
-    root = pathlib.Path(__file__).resolve().parent.parent
-    commit = call("git", "-C", root, "describe", "--always", "--dirty").strip()
-    models = [line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-              if line.startswith("model name")]
-    return f"Commit {commit}, {datetime.date.today()}, {os.cpu_count()} cores of {(models or [platform.machine()])[0]}."
 
 
 RESULTS = "## Results"

@@ -155,9 +155,10 @@ TEST(DepthStep, goesFromWhereKeyframesWereToWhereTheyAre) {
     WallSeenTwice wall(error, off);
     const double before_m = wall.worst_m();
     EXPECT_GT(before_m, 0.02);
-    DepthStep step{error, test::roomCamera(kWidth)};
-    step.keyframes = {keyframe(0, 0, wall.T_far, kFirstFragment),
-                      keyframe(1, 50, wall.T_near, kFirstFragment)};
+    DepthStep step{
+        error,
+        test::roomCamera(kWidth),
+        {keyframe(0, 0, wall.T_far, kFirstFragment), keyframe(1, 50, wall.T_near, kFirstFragment)}};
     step.motion = Deformation(1, {{0, Eigen::Isometry3d::Identity(), true, kFirstFragment},
                                   {50, off.inverse(), false, kFirstFragment}});
     correctDepth(wall.map, step);

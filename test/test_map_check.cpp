@@ -114,5 +114,18 @@ TEST(PeopleCheck, OfAnEmptyMapIsZero) {
   EXPECT_EQ(PeopleCheck(none).part(), 0.0);
 }
 
+TEST(ViewCheck, CountsFramesOfWhichPeopleLeaveAQuarter) {
+  const RgbdFrame frame = frameOf(2.0);
+  cv::Mat person(60, 80, CV_8UC1, cv::Scalar(0));
+  person.colRange(0, 56).setTo(255);
+  ViewCheck check;
+  check.add(frame, person, true);
+  check.add(frame, person, false);
+  person.colRange(0, 64).setTo(255);
+  check.add(frame, person, true);
+  EXPECT_EQ(check.frames(), 2U);
+  EXPECT_EQ(check.posed(), 1U);
+}
+
 }  // namespace
 }  // namespace pf

@@ -88,4 +88,12 @@ double PeopleCheck::part() const {
   return surfels() > 0 ? static_cast<double>(onPeople()) / static_cast<double>(surfels()) : 0.0;
 }
 
+void ViewCheck::add(const RgbdFrame& frame, const cv::Mat& mask, bool has_pose) {
+  depthInMetres(frame, kLeastDepth_m, kMostDepth_m, depth_m_);
+  depth_m_.setTo(0, mask != 0);
+  if (cv::countNonZero(depth_m_) < kEnough * static_cast<double>(depth_m_.total())) return;
+  ++frames_;
+  posed_ += has_pose ? 1 : 0;
+}
+
 }  // namespace pf

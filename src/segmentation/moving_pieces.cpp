@@ -18,15 +18,19 @@ constexpr float kCarriedOff_m = 0.15F;  // of an object's depth from where it wa
 constexpr float kEdgeSigmas = 3.0F;
 constexpr float kEdgeSlope = 2.0F;  // depth per distance across, of neighbours on one surface
 
+/// Whether a cell may be of something that moves: neither a person's nor surely the map's.
+bool isOpen(const MovingScene& scene, int cell) {
+  const Background background = scene.background[cell];
+  if (background == Background::agrees || background == Background::farther) return false;
+  return scene.grid.hasDepth(cell) && scene.is_person[cell] == 0;
+}
+
 }  // namespace
 
-/// Cells that may be of something that moves: neither a person's nor surely the map's.
 void MovingObjects::findOpenCells(const MovingScene& scene) {
   open_.clear();
   for (int cell = 0; cell < scene.grid.size(); ++cell) {
-    const Background background = scene.background[cell];
-    if (background == Background::agrees || background == Background::farther) continue;
-    if (scene.grid.hasDepth(cell) && scene.is_person[cell] == 0) open_.push_back(cell);
+    if (isOpen(scene, cell)) open_.push_back(cell);
   }
 }
 
@@ -67,16 +71,8 @@ void MovingObjects::carryObjects(const MovingScene& scene) {
 /// Whether a piece may grow into the cell. Before the map, what moves slowly was partly where it is
 /// now; elsewhere only what was not there yet is no part of the static world.
 bool MovingObjects::isOfMoving(const MovingScene& scene, int cell) const {
-  if (!scene.grid.hasDepth(cell) || scene.is_person[cell] != 0) return false;
-  switch (scene.background[cell]) {
-    case Background::nearer:
-      return true;
-    case Background::unknown:
-    case Background::recent:
-      return !before_.wasThere(cell);
-    default:
-      return false;
-  }
+  if (!isOpen(scene, cell)) return false;
+  return scene.background[cell] == Background::nearer || !before_.wasThere(cell);
 }
 
 MovingObjects::Piece MovingObjects::growFrom(const MovingScene& scene, int first) {

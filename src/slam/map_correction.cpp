@@ -32,10 +32,9 @@ void improve(DepthImprovement& depth, CorrectedMap& made) {
   GraphResult result = made.graph.remeasure(
       measurePairs(seen, made.graph.constraints(), depth.tracking, depth.step.sensor));
   depth.moves_keyframes = result.accepted;
-  DepthStep step = depth.step;
-  step.keyframes = made.graph.keyframes();
-  step.motion = result.deformation;
-  correctDepth(made.map, step);
+  depth.step.keyframes = made.graph.keyframes();
+  depth.step.motion = result.deformation;
+  correctDepth(made.map, depth.step);
   made.graph.countCorrection();
   if (!result.accepted) return;
   ++made.closed.accepted;

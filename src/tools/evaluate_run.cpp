@@ -66,26 +66,6 @@ class Undistorter {
   Rectifier rectifier_;
 };
 
-/// Frames with true masks that see enough beside the people, and how many of them have a pose at
-/// the time.
-struct ViewCheck {
-  static constexpr double kEnough = 0.25;  // part of the pixels with depth
-
-  std::size_t frames = 0, posed = 0;
-
-  void add(const RgbdFrame& frame, const cv::Mat& mask, bool has_pose) {
-    constexpr double kLeastDepth_m = 0.1, kMostDepth_m = 20.0;
-    depthInMetres(frame, kLeastDepth_m, kMostDepth_m, depth_m_);
-    depth_m_.setTo(0, mask != 0);
-    if (cv::countNonZero(depth_m_) < kEnough * static_cast<double>(depth_m_.total())) return;
-    ++frames;
-    posed += has_pose ? 1 : 0;
-  }
-
- private:
-  cv::Mat depth_m_;
-};
-
 void printAnswer(const DepthCheck& depth, const PeopleCheck& people, const ViewCheck& view,
                  std::size_t masked_frames, bool json) {
   if (json) {
@@ -99,8 +79,8 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, const ViewC
                             {"on_people", people.onPeople()},
                             {"part", people.part()}};
     out["beside_people"] = {{"least_part_of_view", ViewCheck::kEnough},
-                            {"frames", view.frames},
-                            {"with_a_pose", view.posed}};
+                            {"frames", view.frames()},
+                            {"with_a_pose", view.posed()}};
     std::cout << out.dump(2) << "\n";
     return;
   }
@@ -112,7 +92,7 @@ void printAnswer(const DepthCheck& depth, const PeopleCheck& people, const ViewC
     std::printf("surfels on people       %.2f %% (%zu of %zu; %zu frames with true masks)\n",
                 100 * people.part(), people.onPeople(), people.surfels(), masked_frames);
     std::printf("poses beside people     %zu of the %zu frames of which people leave %.0f %%\n",
-                view.posed, view.frames, 100 * ViewCheck::kEnough);
+                view.posed(), view.frames(), 100 * ViewCheck::kEnough);
   }
 }
 

@@ -61,4 +61,20 @@ class PeopleCheck {
   std::vector<std::uint32_t> on_mask_, beside_;  ///< frames that the surfel agreed with
 };
 
+/// Frames of which people leave enough, and how many of them have a pose.
+class ViewCheck {
+ public:
+  static constexpr double kEnough = 0.25;  ///< part of the pixels, with depth and beside people
+
+  /// An undistorted frame and its true mask (CV_8UC1, 0 = no person).
+  void add(const RgbdFrame& frame, const cv::Mat& mask, bool has_pose);
+
+  std::size_t frames() const { return frames_; }
+  std::size_t posed() const { return posed_; }
+
+ private:
+  cv::Mat depth_m_;
+  std::size_t frames_ = 0, posed_ = 0;
+};
+
 }  // namespace pf

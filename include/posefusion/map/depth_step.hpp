@@ -14,8 +14,8 @@
 namespace pf {
 
 /// What is newly known of the depth camera, as it moves what its depth has made. Surfels are means
-/// of many frames, near ones above all: each is moved along the rays of the keyframes that saw it
-/// since it was made, as far as each of them counts, from where they were to where they are.
+/// of many frames, near ones above all: each is moved along the rays of the keyframes of its making
+/// and of its last support, weighted as fusion weighs them, from where they were to where they are.
 struct DepthStep {
   DepthField field;  ///< added to what depth was corrected by (1/m)
   PinholeCamera camera;
@@ -26,9 +26,9 @@ struct DepthStep {
 };
 
 /// Moves each surfel, position, normal and radius, and lowers its weight to what is then known of
-/// it, by some of the keyframes of its fragment from the last one when it was made (the first, for
-/// what is older) to the last one when it was seen. Behind their cameras, or without a keyframe, it
-/// stays. The result does not depend on the number of threads.
+/// it, by two keyframes of its fragment: the last one when it was made (the first, for what is
+/// older), and the last one when it was seen. Behind their cameras depth does not move it; without
+/// a keyframe it stays. The result does not depend on the number of threads.
 void correctDepth(SurfelMap& map, const DepthStep& step);
 
 /// The same of some blocks.
