@@ -9,6 +9,7 @@
 namespace pf {
 
 inline const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
+inline constexpr std::int64_t kFrame_ns = 33'333'333;
 
 /// Depth of a round body at `z_m` whose pixels are `shape`.
 inline void putBody(cv::Mat& depth_m, const cv::Mat& shape, float z_m, int centre_u) {

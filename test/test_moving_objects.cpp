@@ -77,7 +77,9 @@ class Room {
     compareWithModel(grid_, view_, view_.T_map_camera.inverse() * T_map_camera, DepthSensor(),
                      background);
     const std::vector<std::uint8_t> no_people(static_cast<std::size_t>(grid_.size()), 0);
-    found_ = objects_.find({grid_, kCamera, view_, T_map_camera, background, no_people, stamp_ns_});
+    const MovingScene scene{grid_, kCamera, view_, T_map_camera, background, no_people, stamp_ns_};
+    objects_.expect(scene);
+    found_ = objects_.find(scene);
     worst_ = std::max(worst_, maskedPart());
     view_.T_map_camera = T_map_camera;  // it was tracked
     view_.stamp_ns = stamp_ns_;

@@ -7,7 +7,6 @@
 namespace pf {
 namespace {
 
-constexpr std::int64_t kFrame_ns = 33'333'333;
 constexpr float kWall_m = 3.0F, kBox_m = 2.0F;
 
 /// A camera that rests before a mapped wall. `box`: of the picture, nearer than the wall.

@@ -76,15 +76,16 @@ const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
   cv::buildOpticalFlowPyramid(grey_, images_.newest_, kWindow, kPyramidLevels);
   images_.comparable_ = !images_.last_.empty() && frame_size_ == frame.color.size();
   frame_size_ = frame.color.size();
-  flow_.before.clear();
-  flow_.after.clear();
-  flow_.ids.clear();
-  flow_.from_ns = newest_ns_;
-  flow_.to_ns = newest_ns_ = frame.stamp_ns;
+  SparseFlow& flow = images_.corners_;
+  flow.before.clear();
+  flow.after.clear();
+  flow.ids.clear();
+  flow.from_ns = newest_ns_;
+  flow.to_ns = newest_ns_ = frame.stamp_ns;
   if (images_.comparable_ && !corners_.empty()) followCorners();
-  keep(flow_.after);
+  keep(flow.after);
   findCorners();
-  return flow_;
+  return flow;
 }
 
 /// Takes slow changes of brightness out: a camera that changes its exposure is no motion.
@@ -112,11 +113,12 @@ void FlowTracker::followCorners() {
   };
   // A fast turn, or frames that were dropped: further than flow reaches by itself.
   if (attempt({}) < corners_.size() / kFewFollowed) attempt(wholeShift());
+  SparseFlow& flow = images_.corners_;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     if (found_[i] == 0) continue;
-    flow_.before.push_back(toImage(corners_[i], images_.scale_));
-    flow_.after.push_back(toImage(there_[i], images_.scale_));
-    flow_.ids.push_back(ids_[i]);
+    flow.before.push_back(toImage(corners_[i], images_.scale_));
+    flow.after.push_back(toImage(there_[i], images_.scale_));
+    flow.ids.push_back(ids_[i]);
   }
 }
 
@@ -148,7 +150,7 @@ void FlowTracker::keep(const std::vector<cv::Point2f>& followed) {
     }
     cv::circle(free_, at, static_cast<int>(kCornerSpacing_px), 0, cv::FILLED);
     corners_.push_back(p);
-    ids_.push_back(flow_.ids[i]);
+    ids_.push_back(images_.corners_.ids[i]);
   }
 }
 

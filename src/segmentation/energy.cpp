@@ -30,6 +30,7 @@ constexpr float kAgreesWithMap = -2.0F;
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
 constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
+constexpr float kObject = -4.0F;         // the same, where another moving object was followed to
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
@@ -119,6 +120,11 @@ bool isFlat(const Evidence& evidence, int cell) {
   return flatness == Flatness::large && evidence.background[cell] != Background::nearer;
 }
 
+bool isObject(const Evidence& evidence, int cell) {
+  if (evidence.object[cell] < 0 || evidence.distance.relative[cell] < kInside) return false;
+  return evidence.shown_person[cell] < 0 || !isShown(evidence.shown, cell);
+}
+
 void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
                    std::vector<TrackedPerson>& people, Unary& unary) {
   const SceneGrid& grid = evidence.grid;
@@ -152,6 +158,7 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
       value += in_front ? kCarriedInFront : kCarried;
     }
     if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
+    if (isObject(evidence, cell)) value = kObject;
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
     return value;
   };

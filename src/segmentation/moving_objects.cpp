@@ -115,7 +115,6 @@ std::vector<MovingObject> MovingObjects::find(const MovingScene& scene) {
   before_.compare(scene.grid, open_, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
   const double elapsed_s = std::max(0.0, secondsBetween(last_ns_, scene.stamp_ns));
   findSeeds(scene);
-  carryObjects(scene);
   std::vector<Piece> pieces = grow(scene);
   follow(scene, pieces, elapsed_s);
   labels_.assign(scene.grid.size(), 0);

@@ -46,8 +46,7 @@ void MovingObjects::findSeeds(const MovingScene& scene) {
   cv::morphologyEx(image, image, cv::MORPH_OPEN, kernel);
 }
 
-/// Where the objects of the last frame are to be expected.
-void MovingObjects::carryObjects(const MovingScene& scene) {
+const std::vector<std::int16_t>& MovingObjects::expect(const MovingScene& scene) {
   const SceneGrid& grid = scene.grid;
   const PinholeCamera camera = scene.camera.shrunk(grid.step);
   const double elapsed_s = secondsBetween(last_ns_, scene.stamp_ns);
@@ -66,6 +65,7 @@ void MovingObjects::carryObjects(const MovingScene& scene) {
       carried_[cell] = static_cast<std::int16_t>(k);
     }
   }
+  return carried_;
 }
 
 /// Whether a piece may grow into the cell. Before the map, what moves slowly was partly where it is

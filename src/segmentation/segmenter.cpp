@@ -65,8 +65,7 @@ void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
   State& s = *state_;
   if (view == nullptr || !config_.moving_objects) return s.objects.reset();
   const std::vector<MovingObject> objects =
-      s.objects.find({s.evidence.grid, frame.camera, *view, T_uncorrected_camera,
-                      s.evidence.background, s.labels, frame.stamp_ns});
+      s.objects.find(s.sceneOf(frame, *view, T_uncorrected_camera));
   for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
   reportObjects(*view, objects, result);
 }
@@ -92,15 +91,17 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
   Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_uncorrected_camera = Eigen::Isometry3d::Identity();
-  if (background != nullptr) {
-    T_view_camera = s.motion.predict(*background, frame.stamp_ns);
-    T_uncorrected_camera = background->T_uncorrected_camera() * T_view_camera;
-  }
   if (!config_.enabled) return result;
   s.takeGrid(frame, config_.grid_width);
   s.evidence.background.assign(s.evidence.grid.size(), Background::unknown);
   if (background != nullptr) {
+    T_view_camera = s.motion.expect(*background, frame, flow.corners(), s.depth_m);
+    T_uncorrected_camera = background->T_uncorrected_camera() * T_view_camera;
     compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
+  }
+  s.evidence.object.assign(s.evidence.grid.size(), -1);
+  if (background != nullptr && config_.moving_objects) {
+    s.evidence.object = s.objects.expect(s.sceneOf(frame, *background, T_uncorrected_camera));
   }
   const bool has_people = findPeople(frame, flow, people);
   std::vector<std::uint8_t> taken = s.labels;
@@ -109,6 +110,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
   if (has_people || !is_empty) s.takeOut(frame, taken, config_.margin_px, result);
   if (has_people) keepPeople(frame, background != nullptr, result);
   placePeople(background, T_uncorrected_camera, result);
+  s.motion.keep(frame.stamp_ns, result.mask, s.depth_m);
   return result;
 }
 

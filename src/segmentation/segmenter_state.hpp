@@ -7,6 +7,7 @@
 #include "posefusion/core/pace.hpp"
 #include "posefusion/segmentation/cut_grid.hpp"
 #include "posefusion/segmentation/energy.hpp"
+#include "posefusion/segmentation/expected_motion.hpp"
 #include "posefusion/segmentation/moving_objects.hpp"
 #include "posefusion/segmentation/paper_cut.hpp"
 #include "posefusion/segmentation/people_in_map.hpp"
@@ -17,12 +18,12 @@ namespace pf {
 
 /// What is kept from frame to frame, and the steps that make one frame's mask.
 struct PeopleSegmenter::State {
-  explicit State(const DepthSensor& sensor) : objects(sensor) {}
+  explicit State(const DepthSensor& sensor) : motion(sensor), objects(sensor) {}
 
   cv::Mat depth_m;
   std::vector<TrackedPerson> people;
   Evidence evidence;
-  MotionPredictor motion;
+  ExpectedMotion motion;
   PlaneFinder planes;
   Unary unary;
   GridCutter cutter;
@@ -34,6 +35,11 @@ struct PeopleSegmenter::State {
   PaceMeter pace_meter;
   float worth = 1.0F;  // of the frame, see Pace
 
+  MovingScene sceneOf(const RgbdFrame& frame, const ModelView& view,
+                      const Eigen::Isometry3d& T_uncorrected_camera) const {
+    return {evidence.grid,       frame.camera, view,          T_uncorrected_camera,
+            evidence.background, labels,       frame.stamp_ns};
+  }
   void takeGrid(const RgbdFrame& frame, int grid_width);
   void locate(double carry_s);
   void markCarriedMasks();

@@ -11,14 +11,6 @@ namespace {
 // Added to what a robot may do, where nothing measures the motion.
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
 constexpr double kMaxExtrapolation_s = 0.2;
-// To close a loop by, which the graph takes for what its covariance says, fewer are enough.
-constexpr int kEnoughCorners = 40;
-constexpr double kHalf = 0.5;
-
-bool hasEnoughCorners(const SparseMotion& motion) {
-  return motion.found && motion.inliers >= kEnoughCorners &&
-         motion.inliers >= kHalf * motion.matches;
-}
 
 /// Where the two contradict each other the pictures are believed: the map is made of them.
 std::optional<MotionPrior> stepOf(const SparseMotion& motion,
@@ -41,8 +33,7 @@ PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
   T_reckoned_ =
       orthonormalised(T_reckoned_ * previous_.T_map_camera.inverse() * prior.T_map_camera);
   recent_.add(previous_.T_map_camera.inverse() * prior.T_map_camera, elapsed_s);
-  carry(location.step.value_or(MotionPrior()),
-        location.has_odometry || hasEnoughCorners(location.motion));
+  carry(location.step.value_or(MotionPrior()), location.has_odometry || location.motion.isSure());
   location.carried = carried_;
   return prior;
 }

@@ -37,8 +37,8 @@ SeenFrame Pipeline::see(const RgbdFrame& frame) {
   if (!seen.blur.sharp) return seen;
   seen.people = detector_->detect(seen.frame);
   seen.pose_ms = watch.lapMs();
-  seen.flow = flow_.advance(seen.frame);
-  seen.flow_images = flow_.images();
+  flow_.advance(seen.frame);
+  seen.flow = flow_.images();
   seen.flow_ms = watch.lapMs();
   return seen;
 }
@@ -55,10 +55,10 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   }
   Stopwatch watch;
   const ModelView& view = mapper_.view();
-  out.segmentation = segmenter_.segment(frame, out.seen.flow_images, out.seen.people,
-                                        view.empty() ? nullptr : &view);
+  out.segmentation =
+      segmenter_.segment(frame, out.seen.flow, out.seen.people, view.empty() ? nullptr : &view);
   out.segmentation_ms = watch.lapMs();
-  StaticFrame still{frame, out.segmentation.mask, out.seen.flow};
+  StaticFrame still{frame, out.segmentation.mask, out.seen.flow.corners()};
   still.frame.depth = out.segmentation.static_depth;
   still.forced = out.seen.blur.forced;
   still.in_map_mask = out.segmentation.in_map_mask;

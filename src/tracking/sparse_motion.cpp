@@ -27,6 +27,8 @@ constexpr double kHeldShare = 0.5;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
 constexpr double kSharedTranslation_m = 0.003;
 constexpr double kSharedRotation_rad = 0.0012;
+constexpr int kSureInliers = 40;
+constexpr double kSureShare = 0.5;
 
 /// How far the map's stable surface is that the earlier camera would see at a pixel (m); 0: none.
 float mappedAt(const FlowScene& scene, const PinholeCamera& camera, const cv::Point2f& pixel) {
@@ -111,7 +113,23 @@ bool refine(const std::vector<Sight>& sights, const PinholeCamera& camera, Sight
          motion.inliers >= kMinInlierShare * static_cast<double>(sights.size());
 }
 
-SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera) {
+/// The motion that the sights agree on, looked for near the expected one first.
+bool fit(const std::vector<Sight>& sights, const PinholeCamera& camera,
+         const std::optional<Eigen::Isometry3d>& expected, SightMotion& motion) {
+  if (expected) {
+    motion.T_after_before = expected->inverse();
+    const double enough = kHeldShare * static_cast<double>(sights.size());
+    if (refine(sights, camera, motion) && motion.inliers >= enough) return true;
+    motion = {};
+  }
+  // RANSAC's answer can be a mirrored one where the corners lie in a plane.
+  if (guess(sights, camera, motion.T_after_before) && refine(sights, camera, motion)) return true;
+  motion = {};
+  return refine(sights, camera, motion);
+}
+
+SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera,
+                      const std::optional<Eigen::Isometry3d>& expected) {
   SparseMotion motion;
   const auto far = std::stable_partition(sights.begin(), sights.end(),
                                          [](const Sight& l) { return l.hasDepth(); });
@@ -119,17 +137,13 @@ SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera) {
   if (near >= kEnoughNear) sights.erase(far, sights.end());
   motion.matches = static_cast<int>(sights.size());
   if (near < kMinNear || motion.matches < kMinMatches) return motion;
-  SightMotion fit;
-  // RANSAC's answer can be a mirrored one where the corners lie in a plane.
-  if (!guess(sights, camera, fit.T_after_before) || !refine(sights, camera, fit)) {
-    fit = {};
-    if (!refine(sights, camera, fit)) return motion;
-  }
-  motion.inliers = fit.inliers;
+  SightMotion best;
+  if (!fit(sights, camera, expected, best)) return motion;
+  motion.inliers = best.inliers;
   motion.found = true;
-  motion.rmse_px = std::sqrt(fit.squared_px / fit.inliers);
-  motion.T_before_after = fit.T_after_before.inverse();
-  motion.covariance = fit.covariance;
+  motion.rmse_px = std::sqrt(best.squared_px / best.inliers);
+  motion.T_before_after = best.T_after_before.inverse();
+  motion.covariance = best.covariance;
   motion.covariance.diagonal().head<3>().array() += kSharedTranslation_m * kSharedTranslation_m;
   motion.covariance.diagonal().tail<3>().array() += kSharedRotation_rad * kSharedRotation_rad;
   return motion;
@@ -137,13 +151,20 @@ SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera) {
 
 }  // namespace
 
+bool SparseMotion::isSure() const {
+  return found && inliers >= kSureInliers && inliers >= kSureShare * matches;
+}
+
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera) {
-  const SparseMotion held = estimate(sightsOf(flow, scene, scene.landmarks, camera), camera);
+  const auto from = [&](const Landmarks* landmarks) {
+    return estimate(sightsOf(flow, scene, landmarks, camera), camera, scene.expected);
+  };
+  const SparseMotion held = from(scene.landmarks);
   if (scene.landmarks == nullptr || (held.found && held.inliers >= kHeldShare * held.matches)) {
     return held;
   }
-  const SparseMotion alone = estimate(sightsOf(flow, scene, nullptr, camera), camera);
+  const SparseMotion alone = from(nullptr);
   const bool held_is_better =
       held.found && alone.inliers * held.matches <= held.inliers * alone.matches;
   return held_is_better ? held : alone;

@@ -43,8 +43,12 @@ class FlowImages {
   /// change of size.
   FollowedPoints follow(const std::vector<cv::Point2f>& before) const;
 
+  /// The corners of the first frame that were followed into the second.
+  const SparseFlow& corners() const { return corners_; }
+
  private:
   friend class FlowTracker;
+  SparseFlow corners_;
   std::vector<cv::Mat> last_, newest_;  // pyramids
   float scale_ = 1.0F;                  // pyramid pixels per frame pixel
   bool comparable_ = false;
@@ -76,7 +80,6 @@ class FlowTracker {
   std::vector<cv::Point2f> corners_;  // of the newest frame, pixels of its pyramid
   std::vector<std::uint32_t> ids_;    // of the corners
   std::uint32_t next_id_ = 0;
-  SparseFlow flow_;
   cv::Size frame_size_;
   std::int64_t newest_ns_ = 0;
   cv::Mat small_, grey_, mean_, free_, strength_, strong_, coarse_before_, coarse_after_, hanning_;

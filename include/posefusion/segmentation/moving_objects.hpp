@@ -31,8 +31,11 @@ class MovingObjects {
   explicit MovingObjects(const DepthSensor& sensor);
   ~MovingObjects();
 
-  /// The objects seen in the frame, those at rest for a moment among them, in uncorrected
-  /// coordinates (see ModelView).
+  /// Before find(): the object (any number) that each cell is expected to be of, -1: none.
+  const std::vector<std::int16_t>& expect(const MovingScene& scene);
+
+  /// After expect(): the objects seen in the frame, those at rest for a moment among them, in
+  /// uncorrected coordinates (see ModelView).
   std::vector<MovingObject> find(const MovingScene& scene);
 
   /// 1 = a cell of an object that moves, as of the last find().
@@ -46,7 +49,6 @@ class MovingObjects {
   struct Followed;
   void findOpenCells(const MovingScene& scene);
   void findSeeds(const MovingScene& scene);
-  void carryObjects(const MovingScene& scene);
   bool isOfMoving(const MovingScene& scene, int cell) const;
   std::vector<Piece> grow(const MovingScene& scene);
   Piece growFrom(const MovingScene& scene, int first);

@@ -25,8 +25,7 @@ struct SeenFrame {
   RgbdFrame frame;
   BlurScore blur;
   People people;
-  SparseFlow flow;  ///< from the last sharp frame; empty for a frame that is not mapped
-  FlowImages flow_images;
+  FlowImages flow;  ///< from the last sharp frame; empty for a frame that is not mapped
   double gate_ms = 0;
   double pose_ms = 0;
   double flow_ms = 0;

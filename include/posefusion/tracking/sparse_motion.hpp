@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/se3.hpp"
@@ -19,6 +20,9 @@ struct SparseMotion {
   int matches = 0;                         ///< corners that were followed
   int inliers = 0;
   double rmse_px = 0;  ///< reprojection, over the inliers
+
+  /// Agreed on by so many corners that they are hardly all on one thing that moves.
+  bool isSure() const;
 };
 
 /// What is known of the corners' surroundings.
@@ -32,6 +36,8 @@ struct FlowScene {
   /// The earlier frame, any size: CV_8UC1, 0 = a person's pixel. Empty: no person is in view.
   cv::Mat before_still{};
   DepthSensor sensor{};
+  /// T_before_after as it is expected, which is tried first; none: nothing is expected.
+  std::optional<Eigen::Isometry3d> expected{};
 };
 
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
