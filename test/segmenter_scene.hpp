@@ -59,6 +59,14 @@ struct Scene {
   }
 };
 
+/// The figure's pixels as a detector would show them.
+inline PersonMask maskOf(const Scene& scene) {
+  PersonMask mask;
+  cv::resize(scene.truth, mask.probability, {80, 60}, 0, 0, cv::INTER_AREA);
+  cv::threshold(mask.probability, mask.owner, 127, 1, cv::THRESH_BINARY);
+  return mask;
+}
+
 inline double iou(const cv::Mat& a, const cv::Mat& b) {
   return static_cast<double>(cv::countNonZero(a & b)) / std::max(1, cv::countNonZero(a | b));
 }

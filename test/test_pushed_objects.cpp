@@ -12,31 +12,52 @@ constexpr int kBegin_px = 560, kEnd_px = 335, kStep_px = 5;  // left side of the
 constexpr float kPushed_m = 1.9F;
 constexpr int kRest = (kBegin_px - kEnd_px) / kStep_px;  // frame in which it touches the body
 
-/// A person before a mapped wall, and a box of the clothes' colour that comes before the body and
-/// rests there.
+constexpr int kBeside_px = 385;  // there it is beside the body
+
+/// A person before a mapped wall, and a thing of the clothes' colour before or beside the body.
 class Pushing {
  public:
-  Segmentation see(int number) {
-    Scene scene;
-    box_ = {std::max(kEnd_px, kBegin_px - kStep_px * number), kTop_px, kPushed_px, kPushed_px};
-    box_ &= cv::Rect(0, 0, 640, 480);
-    scene.frame.depth(box_).setTo(kPushed_m);
-    scene.frame.color(box_).setTo(cv::Scalar(30, 60, 120));
-    scene.frame.depth_unit_m = 1.0;
-    scene.frame.stamp_ns = scene.people.stamp_ns = kFrame_ns * (number + 1);
-    scene.room.stamp_ns = kFrame_ns * number;
-    scene.room.T_world_map = Eigen::Isometry3d::Identity();
-    return segmenter_.segment(scene.frame, scene.people, &scene.room);
+  /// A flat box that comes up to the body and rests before it.
+  Segmentation seeBox(int number) {
+    place(std::max(kEnd_px, kBegin_px - kStep_px * number));
+    scene_.frame.depth(thing_).setTo(kPushed_m);
+    return see(number);
   }
 
-  /// Part of the box that is masked.
-  double maskedBox(const cv::Mat& mask) const {
-    return mask.empty() ? 0.0 : cv::countNonZero(mask(box_)) / static_cast<double>(box_.area());
+  /// A round bag that stands beside the body. `taken`: the detector takes it for the person's.
+  Segmentation seeBag(int number, bool taken) {
+    place(kBeside_px);
+    cv::Mat bag = cv::Mat::zeros(480, 640, CV_8UC1);
+    bag(thing_).setTo(255);
+    putBody(scene_.frame.depth, bag, kPushed_m, thing_.x + kPushed_px / 2);
+    if (taken) scene_.truth |= bag;
+    scene_.people.mask = maskOf(scene_);
+    return see(number);
+  }
+
+  /// Part of the thing that is masked.
+  double masked(const cv::Mat& mask) const {
+    return mask.empty() ? 0.0 : cv::countNonZero(mask(thing_)) / static_cast<double>(thing_.area());
   }
 
  private:
+  void place(int left_px) {
+    scene_ = Scene();
+    thing_ = cv::Rect(left_px, kTop_px, kPushed_px, kPushed_px) & cv::Rect(0, 0, 640, 480);
+    scene_.frame.color(thing_).setTo(cv::Scalar(30, 60, 120));
+  }
+
+  Segmentation see(int number) {
+    scene_.frame.depth_unit_m = 1.0;
+    scene_.frame.stamp_ns = scene_.people.stamp_ns = kFrame_ns * (number + 1);
+    scene_.room.stamp_ns = kFrame_ns * number;
+    scene_.room.T_world_map = Eigen::Isometry3d::Identity();
+    return segmenter_.segment(scene_.frame, scene_.people, &scene_.room);
+  }
+
   SegmenterChain segmenter_;
-  cv::Rect box_;
+  Scene scene_;
+  cv::Rect thing_;
 };
 
 /// Width (m) of the objects that are no people.
@@ -52,12 +73,21 @@ TEST(PushedObjects, AreFoundBesideThePersonAndLeftOutOnceAtRest) {
   const double true_m = kPushed_px * kPushed_m / kCamera.fx;
   Pushing scene;
   for (int i = 0; i < kRest + 35; ++i) {
-    const Segmentation result = scene.see(i);
+    const Segmentation result = scene.seeBox(i);
     if (i > 15 && i < kRest + 10) {
-      EXPECT_GT(scene.maskedBox(result.mask), 0.9) << i;
+      EXPECT_GT(scene.masked(result.mask), 0.9) << i;
       EXPECT_GT(widthOfObjects(result), 0.5 * true_m) << i;
     }
-    if (i >= kRest + 20) EXPECT_LT(scene.maskedBox(result.mask), 0.1) << i;
+    if (i >= kRest + 20) EXPECT_LT(scene.masked(result.mask), 0.1) << i;
+  }
+}
+
+TEST(PushedObjects, TakenForThePersonAtFirstAreLeftOutWhereTheyHaveStoodForASecond) {
+  Pushing scene;
+  for (int i = 0; i < 60; ++i) {
+    const double masked = scene.masked(scene.seeBag(i, i < 10).mask);
+    if (i < 20) EXPECT_GT(masked, 0.5) << i;
+    if (i >= 45) EXPECT_LT(masked, 0.2) << i;
   }
 }
 

@@ -120,14 +120,6 @@ TEST(Segmenter, SeedsOutsideTheImage) {
   segmenter.segment(scene.frame, scene.people, nullptr);
 }
 
-/// The figure's pixels as a detector would show them.
-PersonMask maskOf(const Scene& scene) {
-  PersonMask mask;
-  cv::resize(scene.truth, mask.probability, {80, 60}, 0, 0, cv::INTER_AREA);
-  cv::threshold(mask.probability, mask.owner, 127, 1, cv::THRESH_BINARY);
-  return mask;
-}
-
 TEST(Segmenter, TheDetectorsMaskShowsWhatTheJointsLeaveOut) {
   Scene scene;
   auto& joints = scene.people.people[0].joints;

@@ -30,11 +30,25 @@ constexpr float kAgreesWithMap = -2.0F;
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
 constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
-constexpr float kObject = -4.0F;         // the same, where another moving object was followed to
+constexpr float kOtherThing = -4.0F;     // the same
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
 constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
+
+/// Whether the last skeleton or the detector's mask shows a person in the cell.
+bool isDetected(const Evidence& evidence, int cell) {
+  return evidence.distance.relative[cell] < kInside ||
+         (evidence.shown_person[cell] >= 0 && isShown(evidence.shown, cell));
+}
+
+/// Whether the cell shows something else than a person: another moving object was followed there,
+/// or the detector's mask denies what has stood there for a second.
+bool isOtherThing(const Evidence& evidence, int cell) {
+  if (isDetected(evidence, cell)) return false;
+  return evidence.object[cell] >= 0 ||
+         (evidence.stood[cell] != 0 && isDenied(evidence.shown, cell));
+}
 
 /// What the map says of a cell, unless its candidate is known to be in the map by mistake.
 Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerson>& people,
@@ -120,11 +134,6 @@ bool isFlat(const Evidence& evidence, int cell) {
   return flatness == Flatness::large && evidence.background[cell] != Background::nearer;
 }
 
-bool isObject(const Evidence& evidence, int cell) {
-  if (evidence.object[cell] < 0 || evidence.distance.relative[cell] < kInside) return false;
-  return evidence.shown_person[cell] < 0 || !isShown(evidence.shown, cell);
-}
-
 void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
                    std::vector<TrackedPerson>& people, Unary& unary) {
   const SceneGrid& grid = evidence.grid;
@@ -158,7 +167,7 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
       value += in_front ? kCarriedInFront : kCarried;
     }
     if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
-    if (isObject(evidence, cell)) value = kObject;
+    if (isOtherThing(evidence, cell)) value = kOtherThing;
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
     return value;
   };

@@ -110,9 +110,6 @@ void MovingObjects::follow(const MovingScene& scene, std::vector<Piece>& pieces,
 }
 
 std::vector<MovingObject> MovingObjects::find(const MovingScene& scene) {
-  before_.know(scene.view);
-  findOpenCells(scene);
-  before_.compare(scene.grid, open_, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
   const double elapsed_s = std::max(0.0, secondsBetween(last_ns_, scene.stamp_ns));
   findSeeds(scene);
   std::vector<Piece> pieces = grow(scene);

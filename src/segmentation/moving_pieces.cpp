@@ -18,11 +18,11 @@ constexpr float kCarriedOff_m = 0.15F;  // of an object's depth from where it wa
 constexpr float kEdgeSigmas = 3.0F;
 constexpr float kEdgeSlope = 2.0F;  // depth per distance across, of neighbours on one surface
 
-/// Whether a cell may be of something that moves: neither a person's nor surely the map's.
+/// Whether a cell is not surely the map's.
 bool isOpen(const MovingScene& scene, int cell) {
   const Background background = scene.background[cell];
   if (background == Background::agrees || background == Background::farther) return false;
-  return scene.grid.hasDepth(cell) && scene.is_person[cell] == 0;
+  return scene.grid.hasDepth(cell);
 }
 
 }  // namespace
@@ -39,7 +39,9 @@ void MovingObjects::findSeeds(const MovingScene& scene) {
   const SceneGrid& grid = scene.grid;
   seeds_.assign(grid.size(), 0);
   for (const int cell : open_) {
-    seeds_[cell] = scene.background[cell] != Background::recent && before_.wasFree(cell) ? 1 : 0;
+    const bool may_move =
+        scene.is_person[cell] == 0 && scene.background[cell] != Background::recent;
+    seeds_[cell] = may_move && before_.wasFree(cell) ? 1 : 0;
   }
   cv::Mat image(grid.rows, grid.cols, CV_8UC1, seeds_.data());
   const cv::Mat kernel = cv::Mat::ones(kLeastThickness, kLeastThickness, CV_8UC1);
@@ -47,6 +49,9 @@ void MovingObjects::findSeeds(const MovingScene& scene) {
 }
 
 const std::vector<std::int16_t>& MovingObjects::expect(const MovingScene& scene) {
+  before_.know(scene.view);
+  findOpenCells(scene);
+  before_.compare(scene.grid, open_, scene.T_uncorrected_camera, scene.stamp_ns, sensor_);
   const SceneGrid& grid = scene.grid;
   const PinholeCamera camera = scene.camera.shrunk(grid.step);
   const double elapsed_s = secondsBetween(last_ns_, scene.stamp_ns);
@@ -71,7 +76,7 @@ const std::vector<std::int16_t>& MovingObjects::expect(const MovingScene& scene)
 /// Whether a piece may grow into the cell. Before the map, what moves slowly was partly where it is
 /// now; elsewhere only what was not there yet is no part of the static world.
 bool MovingObjects::isOfMoving(const MovingScene& scene, int cell) const {
-  if (!isOpen(scene, cell)) return false;
+  if (!isOpen(scene, cell) || scene.is_person[cell] != 0) return false;
   return scene.background[cell] == Background::nearer || !before_.wasThere(cell);
 }
 

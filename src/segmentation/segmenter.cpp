@@ -100,8 +100,10 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
     compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
   }
   s.evidence.object.assign(s.evidence.grid.size(), -1);
+  s.evidence.stood.assign(s.evidence.grid.size(), 0);
   if (background != nullptr && config_.moving_objects) {
     s.evidence.object = s.objects.expect(s.sceneOf(frame, *background, T_uncorrected_camera));
+    for (int c = 0; c < s.evidence.grid.size(); ++c) s.evidence.stood[c] = s.objects.stood(c);
   }
   const bool has_people = findPeople(frame, flow, people);
   std::vector<std::uint8_t> taken = s.labels;

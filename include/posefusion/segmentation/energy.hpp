@@ -21,6 +21,7 @@ struct Evidence {
   std::vector<Flatness> flatness;
   std::vector<std::int16_t> carried;  ///< person whose carried mask holds the cell, -1: none
   std::vector<std::int16_t> object;   ///< moving object that the cell should be of, -1: none
+  std::vector<std::uint8_t> stood;    ///< 1 = what the cell shows has stood there for a second
   BodyDistance distance;
   ShownPeople shown;                       ///< by the detector's mask
   std::vector<std::int16_t> shown_person;  ///< person that it shows in the cell, -1: none
@@ -40,10 +41,6 @@ int candidateOf(const Evidence& evidence, int cell);
 
 /// Whether the cell is on a small plane, or on a large one and not known to be in front of the map.
 bool isFlat(const Evidence& evidence, int cell);
-
-/// Whether another moving object was followed to the cell, and nothing detected shows a person
-/// there.
-bool isObject(const Evidence& evidence, int cell);
 
 /// Sum of the improved terms: distance to the skeletons in space, colour, agreement with the map,
 /// planes, the carried mask. Updates the colours of the people.

@@ -38,6 +38,9 @@ class MovingObjects {
   /// uncorrected coordinates (see ModelView).
   std::vector<MovingObject> find(const MovingScene& scene);
 
+  /// After expect(): whether a cell shows what has stood there for a second.
+  bool stood(int cell) const { return before_.stood(cell); }
+
   /// 1 = a cell of an object that moves, as of the last find().
   const std::vector<std::uint8_t>& labels() const { return labels_; }
 
