@@ -17,7 +17,7 @@ std::vector<LoopError> checkLoops(const Trajectory& truth, const std::vector<Key
     const auto to = poseAt(truth, keyframes.at(static_cast<std::size_t>(c.to)).stamp_ns);
     if (!from || !to) continue;
     const Eigen::Isometry3d off = (from->inverse() * *to).inverse() * c.T_from_to;
-    errors.push_back({c.from, c.to, off.translation().norm(), angleOf(off) * 180.0 / M_PI});
+    errors.push_back({c.from, c.to, off.translation().norm(), angleOf(off) * kDegreesPerRadian});
   }
   return errors;
 }

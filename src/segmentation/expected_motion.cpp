@@ -1,11 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/segmentation/expected_motion.hpp"
 
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "posefusion/tracking/sparse_motion.hpp"
 
 namespace pf {
+namespace {
+
+/// The corners that lay on nothing that moves, by a mask of the frame before.
+SparseFlow withoutMasked(const SparseFlow& flow, const cv::Mat& mask) {
+  SparseFlow still;
+  still.from_ns = flow.from_ns;
+  still.to_ns = flow.to_ns;
+  for (std::size_t i = 0; i < flow.before.size(); ++i) {
+    const cv::Point at(cvRound(flow.before[i].x), cvRound(flow.before[i].y));
+    const bool inside = cv::Rect({}, mask.size()).contains(at);
+    if (inside && mask.at<std::uint8_t>(at) != 0) continue;
+    still.before.push_back(flow.before[i]);
+    still.after.push_back(flow.after[i]);
+    still.ids.push_back(flow.ids[i]);
+  }
+  return still;
+}
+
+/// 0 where something moves, small.
+cv::Mat stillOf(const cv::Mat& mask) {
+  constexpr int kShrink = 8;
+  if (mask.empty()) return {};
+  const cv::Size size(std::max(1, mask.cols / kShrink), std::max(1, mask.rows / kShrink));
+  cv::Mat small;
+  cv::resize(mask, small, size, 0, 0, cv::INTER_NEAREST);
+  return small == 0;
+}
+
+}  // namespace
 
 /// The step to the frame from the one before, by corners.
 void ExpectedMotion::follow(const ModelView& view, const RgbdFrame& frame, const SparseFlow& flow,
@@ -14,10 +45,10 @@ void ExpectedMotion::follow(const ModelView& view, const RgbdFrame& frame, const
   if (!is_next || before_m_.size() != depth_m.size()) return;
   const Eigen::Isometry3d T_view_before = constant_velocity_.predict(view, flow.from_ns);
   FlowScene scene{before_m_, depth_m, flow.from_ns == view.stamp_ns ? &view : nullptr};
-  scene.before_still = before_still_;
+  scene.before_still = stillOf(before_mask_);
   scene.sensor = sensor_;
   scene.expected = T_view_before.inverse() * constant_velocity_.predict(view, flow.to_ns);
-  const SparseMotion step = estimateMotion(flow, scene, frame.camera);
+  const SparseMotion step = estimateMotion(withoutMasked(flow, before_mask_), scene, frame.camera);
   if (step.isSure()) steps_.push_back({flow.from_ns, flow.to_ns, step.T_before_after});
 }
 
@@ -38,11 +69,8 @@ Eigen::Isometry3d ExpectedMotion::expect(const ModelView& view, const RgbdFrame&
 
 void ExpectedMotion::keep(std::int64_t stamp_ns, const cv::Mat& mask, cv::Mat& depth_m) {
   std::swap(before_m_, depth_m);
-  before_still_ = cv::Mat();
+  before_mask_ = mask;
   before_ns_ = stamp_ns;
-  if (mask.empty()) return;
-  before_m_.setTo(0, mask);
-  cv::compare(mask, 0, before_still_, cv::CMP_EQ);
 }
 
 }  // namespace pf

@@ -25,7 +25,7 @@ constexpr double kLeastOverlap = 0.3;
 std::string stepText(const Eigen::Isometry3d& step, const char* what) {
   char text[96];
   std::snprintf(text, sizeof text, "%.3f m and %.1f degrees %s", step.translation().norm(),
-                angleOf(step) * 180.0 / M_PI, what);
+                angleOf(step) * kDegreesPerRadian, what);
   return text;
 }
 

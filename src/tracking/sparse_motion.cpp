@@ -51,7 +51,7 @@ bool isBeforeMap(const DepthSensor& sensor, float mapped_m, double z) {
 std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
                             const Landmarks* landmarks, const PinholeCamera& camera) {
   std::vector<Sight> sights;
-  const Surroundings surroundings(scene.before_m, scene.before_still);
+  std::optional<Surroundings> surroundings;  // few frames ask for them
   const Eigen::Isometry3d T_before_map = scene.T_map_before.inverse();
   for (std::size_t i = 0; i < flow.before.size(); ++i) {
     const cv::Point2f &a = flow.before[i], &b = flow.after[i];
@@ -68,7 +68,8 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
     Sight sight{camera.unproject(a.x, a.y, z), {b.x, b.y}};
     if (known != nullptr) sight.before = T_before_map * known->at;
     if (known == nullptr && z <= 0) {
-      const double beside_m = around.is_edge ? 0.0 : surroundings.depthBeside(a);
+      if (!surroundings) surroundings.emplace(scene.before_m, scene.before_still);
+      const double beside_m = around.is_edge ? 0.0 : surroundings->depthBeside(a);
       if (beside_m <= kOpen_m) continue;
       sight.before = camera.unproject(a.x, a.y, 1.0);
       sight.far_inverse = 0.5 / beside_m;

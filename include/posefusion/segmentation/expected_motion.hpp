@@ -28,8 +28,8 @@ class ExpectedMotion {
                            const cv::Mat& depth_m);
 
   /// The frame's depth, for corners of the next one. `mask`: CV_8UC1, full size, not 0 where
-  /// something moves, whose corners do not count; may be empty. Takes `depth_m` in exchange for one
-  /// that is no longer needed.
+  /// something moves, whose corners do not count; may be empty, is shared. Takes `depth_m` in
+  /// exchange for one that is no longer needed.
   void keep(std::int64_t stamp_ns, const cv::Mat& mask, cv::Mat& depth_m);
 
  private:
@@ -44,8 +44,8 @@ class ExpectedMotion {
   DepthSensor sensor_;
   MotionPredictor constant_velocity_;
   std::deque<Step> steps_;  // since the view
-  cv::Mat before_m_;        // depth of what stands still in the frame before
-  cv::Mat before_still_;    // its pixels: 0 where something moves; may be empty
+  cv::Mat before_m_;        // depth of the frame before
+  cv::Mat before_mask_;     // its pixels: not 0 where something moves; may be empty
   std::int64_t before_ns_ = 0;
 };
 
