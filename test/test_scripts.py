@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("include", "src", "test", "scripts", "examples", "python", "cmake", "debian", ".ci")
 CODE = {".hpp", ".cpp", ".py", ".sh", ".in", ".html", ".css", ".js"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
-LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "segmentation", "tracking", "robot", "graph", "map",
+LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "tracking", "segmentation", "robot", "graph", "map",
           "mesh", "grid",
           "loop", "slam", "io", "evaluation", "run", "python", "simulator", "ros", "openni2",
           "nodelets", "tools", "viewer")
