@@ -27,6 +27,7 @@ constexpr double kHeldShare = 0.5;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
 constexpr double kSharedTranslation_m = 0.003;
 constexpr double kSharedRotation_rad = 0.0012;
+// See SparseMotion::isSure().
 constexpr int kSureInliers = 40;
 constexpr double kSureShare = 0.5;
 

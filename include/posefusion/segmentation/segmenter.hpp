@@ -43,12 +43,12 @@ class PeopleSegmenter {
   explicit PeopleSegmenter(const SegmentationConfig& config, const DepthSensor& sensor = {});
   ~PeopleSegmenter();
 
-  /// `flow` leads from the last frame to this one (also without people): it carries people. After a
-  /// change of the image size no person is carried. `background` is the map rendered at the last
-  /// trusted pose, with the stamp of its frame: what agrees with it is no person. Null while there
-  /// is no map or the camera is lost in it: nothing is known of the background then, and people are
-  /// carried a third as long. `up_camera` is the upward direction in the camera frame when known
-  /// (TF or configuration).
+  /// `flow` leads from the last frame to this one (also without people): it carries people, and
+  /// shows where the camera is to be expected. After a change of the image size no person is
+  /// carried. `background` is the map rendered at the last trusted pose, with the stamp of its
+  /// frame: what agrees with it is no person. Null while there is no map or the camera is lost in
+  /// it: nothing is known of the background then, and people are carried a third as long.
+  /// `up_camera` is the upward direction in the camera frame when known (TF or configuration).
   Segmentation segment(const RgbdFrame& frame, const FlowImages& flow, const People& people,
                        const ModelView* background,
                        const std::optional<Eigen::Vector3d>& up_camera = std::nullopt);
