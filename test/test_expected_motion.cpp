@@ -104,6 +104,52 @@ Vector6d errorAtJerk(int late, const cv::Mat& mask, bool with_corners) {
   return logSe3(T_view_camera.inverse() * path[seen].inverse() * path.back());
 }
 
+TEST(MotionPredictor, StartsFromTheViewsOwnStamp) {
+  // The camera moves steadily; the views come some frames late, now and then one is missing.
+  const auto poseAt = [](std::int64_t frame) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() =
+        Eigen::AngleAxisd(0.02 * static_cast<double>(frame), Eigen::Vector3d::UnitY()).matrix();
+    T.translation() = T.linear() * Eigen::Vector3d(0.3, 0, 0);  // about a fixed centre
+    return T;
+  };
+  for (const int late : {1, 2, 3}) {
+    MotionPredictor predictor;
+    for (std::int64_t frame = 10; frame < 30; ++frame) {
+      const std::int64_t seen = (frame % 7 == 0 ? frame - 1 : frame) - late;
+      ModelView view;
+      view.stamp_ns = seen * kPeriod_ns;
+      view.T_map_camera = poseAt(seen);
+      const Eigen::Isometry3d T = predictor.predict(view, frame * kPeriod_ns);
+      if (frame < 12) continue;
+      const Eigen::Isometry3d truth = poseAt(seen).inverse() * poseAt(frame);
+      EXPECT_LT((T.matrix() - truth.matrix()).norm(), 2e-3) << late << " " << frame;
+    }
+  }
+}
+
+TEST(MotionPredictor, NoMotionLeadsFromOneFragmentToAnother) {
+  MotionPredictor predictor;
+  ModelView view;
+  for (const int fragment : {0, 1, 1}) {
+    view.fragment = fragment;
+    view.stamp_ns += 33;
+    view.T_map_camera.translation().x() += 0.1;
+    const double step = predictor.predict(view, view.stamp_ns + 33).translation().x();
+    const bool is_known = view.stamp_ns == 99;
+    EXPECT_NEAR(step, is_known ? 0.1 : 0.0, 1e-12) << view.stamp_ns;
+  }
+}
+
+TEST(MotionPredictor, KeepsThePoseWhereNoMotionIsKnown) {
+  MotionPredictor predictor;
+  ModelView view;
+  view.stamp_ns = 5;
+  view.T_map_camera.translation() = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(predictor.predict(view, 6).isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(predictor.predict(view, 7).isApprox(Eigen::Isometry3d::Identity()));
+}
+
 TEST(ExpectedMotion, CornersShowAJerkHoweverOldTheViewIs) {
   for (const int late : {1, 2, 3}) {
     EXPECT_LT(errorAtJerk(late, {}, true).norm(), 2e-3) << late;

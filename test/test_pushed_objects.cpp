@@ -78,7 +78,9 @@ TEST(PushedObjects, AreFoundBesideThePersonAndLeftOutOnceAtRest) {
       EXPECT_GT(scene.masked(result.mask), 0.9) << i;
       EXPECT_GT(widthOfObjects(result), 0.5 * true_m) << i;
     }
-    if (i >= kRest + 20) EXPECT_LT(scene.masked(result.mask), 0.1) << i;
+    if (i >= kRest + 20) {
+      EXPECT_LT(scene.masked(result.mask), 0.1) << i;
+    }
   }
 }
 
@@ -86,8 +88,12 @@ TEST(PushedObjects, TakenForThePersonAtFirstAreLeftOutWhereTheyHaveStoodForASeco
   Pushing scene;
   for (int i = 0; i < 60; ++i) {
     const double masked = scene.masked(scene.seeBag(i, i < 10).mask);
-    if (i < 20) EXPECT_GT(masked, 0.5) << i;
-    if (i >= 45) EXPECT_LT(masked, 0.2) << i;
+    if (i < 20) {
+      EXPECT_GT(masked, 0.5) << i;
+    }
+    if (i >= 45) {
+      EXPECT_LT(masked, 0.2) << i;
+    }
   }
 }
 

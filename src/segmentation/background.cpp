@@ -10,9 +10,8 @@ namespace pf {
 namespace {
 
 constexpr float kMinViewDepth_m = 0.1F;  // nearer points of a view do not count
-constexpr int kMinKnown = 4;       // of the 9 pixels looked at, for a verdict other than agreement
-constexpr float kClearly = 2.0F;   // tolerances between surfaces that are surely not the same
-constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is predicted from
+constexpr int kMinKnown = 4;      // of the 9 pixels looked at, for a verdict other than agreement
+constexpr float kClearly = 2.0F;  // tolerances between surfaces that are surely not the same
 
 /// Difference of depth that noise, the map's error and the pose's explain, metres.
 float depthTolerance(const DepthSensor& sensor, float z_m) {
@@ -172,26 +171,6 @@ void compareWithModel(const SceneGrid& grid, const std::vector<int>& cells, cons
   compareCells(
       {grid, view, T_view_camera, sensor}, grid, cells.size(),
       [&](std::size_t i) { return cells[i]; }, result);
-}
-
-Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t stamp_ns) {
-  if (frames_ == 0 || view.stamp_ns != newest_.stamp_ns) {
-    before_ = newest_;
-    newest_ = {view.stamp_ns, {view.fragment, view.T_uncorrected_camera()}};
-    ++frames_;
-  }
-  Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
-  const double last_step = static_cast<double>(newest_.stamp_ns - before_.stamp_ns);
-  const double next_step = static_cast<double>(stamp_ns - newest_.stamp_ns);
-  if (frames_ < 2 || last_step <= 0.0 || next_step <= 0.0) return T_view_camera;
-  if (before_.pose.fragment != newest_.pose.fragment) return T_view_camera;
-  const Eigen::Isometry3d T_before_view =
-      before_.pose.T_map_camera.inverse() * newest_.pose.T_map_camera;
-  const double steps = std::min(next_step / last_step, kMaxSteps);
-  const Eigen::AngleAxisd turn(T_before_view.linear());
-  T_view_camera.linear() = Eigen::AngleAxisd(turn.angle() * steps, turn.axis()).matrix();
-  T_view_camera.translation() = steps * T_before_view.translation();
-  return T_view_camera;
 }
 
 }  // namespace pf

@@ -29,8 +29,7 @@ constexpr float kAgreesWithMap = -2.0F;
 
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
-constexpr float kOnSmallPlane = -4.0F;   // instead of all others, whatever joints and mask say
-constexpr float kOtherThing = -4.0F;     // the same
+constexpr float kNoPerson = -4.0F;       // instead of all others: on a small plane, another thing
 constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
 constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
 constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
@@ -166,8 +165,9 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
     if (evidence.carried[cell] >= 0 && background != Background::agrees) {
       value += in_front ? kCarriedInFront : kCarried;
     }
-    if (evidence.flatness[cell] == Flatness::small) value = kOnSmallPlane;
-    if (isOtherThing(evidence, cell)) value = kOtherThing;
+    if (evidence.flatness[cell] == Flatness::small || isOtherThing(evidence, cell)) {
+      value = kNoPerson;
+    }
     if (!grid.hasDepth(cell)) value = kHoleFactor * value + kHoleBias;
     return value;
   };

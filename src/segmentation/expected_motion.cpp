@@ -2,13 +2,14 @@
 #include "posefusion/segmentation/expected_motion.hpp"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "posefusion/tracking/sparse_motion.hpp"
 
 namespace pf {
 namespace {
+
+constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is predicted from
 
 /// The corners that lay on nothing that moves, by a mask of the frame before.
 SparseFlow withoutMasked(const SparseFlow& flow, const cv::Mat& mask) {
@@ -26,17 +27,27 @@ SparseFlow withoutMasked(const SparseFlow& flow, const cv::Mat& mask) {
   return still;
 }
 
-/// 0 where something moves, small.
-cv::Mat stillOf(const cv::Mat& mask) {
-  constexpr int kShrink = 8;
-  if (mask.empty()) return {};
-  const cv::Size size(std::max(1, mask.cols / kShrink), std::max(1, mask.rows / kShrink));
-  cv::Mat small;
-  cv::resize(mask, small, size, 0, 0, cv::INTER_NEAREST);
-  return small == 0;
-}
-
 }  // namespace
+
+Eigen::Isometry3d MotionPredictor::predict(const ModelView& view, std::int64_t stamp_ns) {
+  if (frames_ == 0 || view.stamp_ns != newest_.stamp_ns) {
+    before_ = newest_;
+    newest_ = {view.stamp_ns, {view.fragment, view.T_uncorrected_camera()}};
+    ++frames_;
+  }
+  Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
+  const double last_step = static_cast<double>(newest_.stamp_ns - before_.stamp_ns);
+  const double next_step = static_cast<double>(stamp_ns - newest_.stamp_ns);
+  if (frames_ < 2 || last_step <= 0.0 || next_step <= 0.0) return T_view_camera;
+  if (before_.pose.fragment != newest_.pose.fragment) return T_view_camera;
+  const Eigen::Isometry3d T_before_view =
+      before_.pose.T_map_camera.inverse() * newest_.pose.T_map_camera;
+  const double steps = std::min(next_step / last_step, kMaxSteps);
+  const Eigen::AngleAxisd turn(T_before_view.linear());
+  T_view_camera.linear() = Eigen::AngleAxisd(turn.angle() * steps, turn.axis()).matrix();
+  T_view_camera.translation() = steps * T_before_view.translation();
+  return T_view_camera;
+}
 
 /// The step to the frame from the one before, by corners.
 void ExpectedMotion::follow(const ModelView& view, const RgbdFrame& frame, const SparseFlow& flow,
@@ -45,7 +56,7 @@ void ExpectedMotion::follow(const ModelView& view, const RgbdFrame& frame, const
   if (!is_next || before_m_.size() != depth_m.size()) return;
   const Eigen::Isometry3d T_view_before = constant_velocity_.predict(view, flow.from_ns);
   FlowScene scene{before_m_, depth_m, flow.from_ns == view.stamp_ns ? &view : nullptr};
-  scene.before_still = stillOf(before_mask_);
+  if (!before_mask_.empty()) scene.before_still = before_mask_ == 0;
   scene.sensor = sensor_;
   scene.expected = T_view_before.inverse() * constant_velocity_.predict(view, flow.to_ns);
   const SparseMotion step = estimateMotion(withoutMasked(flow, before_mask_), scene, frame.camera);

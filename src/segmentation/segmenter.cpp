@@ -58,12 +58,23 @@ void PeopleSegmenter::keepPeople(const RgbdFrame& frame, bool with_map, Segmenta
   s.keepPeople(with_map);
 }
 
-/// Adds to `taken` the cells of what moves beside the people.
+/// Before the people are cut: what speaks for other things than people.
+void PeopleSegmenter::expectObjects(const RgbdFrame& frame, const ModelView* view,
+                                    const Eigen::Isometry3d& T_uncorrected_camera) {
+  State& s = *state_;
+  s.evidence.object.assign(s.evidence.grid.size(), -1);
+  s.evidence.stood.assign(s.evidence.grid.size(), 0);
+  if (view == nullptr || !config_.moving_objects) return s.objects.reset();
+  s.evidence.object = s.objects.expect(s.sceneOf(frame, *view, T_uncorrected_camera));
+  for (int c = 0; c < s.evidence.grid.size(); ++c) s.evidence.stood[c] = s.objects.stood(c);
+}
+
+/// After expectObjects(): adds to `taken` the cells of what moves beside the people.
 void PeopleSegmenter::findObjects(const RgbdFrame& frame, const ModelView* view,
                                   const Eigen::Isometry3d& T_uncorrected_camera,
                                   std::vector<std::uint8_t>& taken, Segmentation& result) {
   State& s = *state_;
-  if (view == nullptr || !config_.moving_objects) return s.objects.reset();
+  if (view == nullptr || !config_.moving_objects) return;
   const std::vector<MovingObject> objects =
       s.objects.find(s.sceneOf(frame, *view, T_uncorrected_camera));
   for (std::size_t cell = 0; cell < taken.size(); ++cell) taken[cell] |= s.objects.labels()[cell];
@@ -99,12 +110,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
     T_uncorrected_camera = background->T_uncorrected_camera() * T_view_camera;
     compareWithModel(s.evidence.grid, *background, T_view_camera, sensor_, s.evidence.background);
   }
-  s.evidence.object.assign(s.evidence.grid.size(), -1);
-  s.evidence.stood.assign(s.evidence.grid.size(), 0);
-  if (background != nullptr && config_.moving_objects) {
-    s.evidence.object = s.objects.expect(s.sceneOf(frame, *background, T_uncorrected_camera));
-    for (int c = 0; c < s.evidence.grid.size(); ++c) s.evidence.stood[c] = s.objects.stood(c);
-  }
+  expectObjects(frame, background, T_uncorrected_camera);
   const bool has_people = findPeople(frame, flow, people);
   std::vector<std::uint8_t> taken = s.labels;
   findObjects(frame, background, T_uncorrected_camera, taken, result);

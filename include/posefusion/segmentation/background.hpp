@@ -34,23 +34,4 @@ void compareWithModel(const SceneGrid& grid, const std::vector<int>& cells, cons
                       const Eigen::Isometry3d& T_view_camera, const DepthSensor& sensor,
                       std::vector<Background>& result);
 
-/// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
-/// views that differ: a view may be older than the frame before (live, or where that was not
-/// fused). Two views of different fragments give no motion.
-class MotionPredictor {
- public:
-  /// T_view_camera for the frame at `stamp_ns` given the newest view.
-  Eigen::Isometry3d predict(const ModelView& view, std::int64_t stamp_ns);
-  void reset() { *this = MotionPredictor(); }
-
- private:
-  struct StampedPose {
-    std::int64_t stamp_ns = 0;
-    MapPose pose;
-  };
-
-  int frames_ = 0;  // views seen
-  StampedPose newest_, before_;
-};
-
 }  // namespace pf

@@ -8,11 +8,30 @@
 
 #include "posefusion/core/depth_sensor.hpp"
 #include "posefusion/core/frame.hpp"
+#include "posefusion/core/map_pose.hpp"
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/frame/model_view.hpp"
-#include "posefusion/segmentation/background.hpp"
 
 namespace pf {
+
+/// Predicts where the camera is by constant velocity, from the stamps and poses of the last two
+/// views that differ: a view may be older than the frame before (live, or where that was not
+/// fused). Two views of different fragments give no motion.
+class MotionPredictor {
+ public:
+  /// T_view_camera for the frame at `stamp_ns` given the newest view.
+  Eigen::Isometry3d predict(const ModelView& view, std::int64_t stamp_ns);
+  void reset() { *this = MotionPredictor(); }
+
+ private:
+  struct StampedPose {
+    std::int64_t stamp_ns = 0;
+    MapPose pose;
+  };
+
+  int frames_ = 0;  // views seen
+  StampedPose newest_, before_;
+};
 
 /// The motion of the camera from the newest view of the map to a frame that is not aligned yet: by
 /// the corners followed from frame to frame since that view (see estimateMotion()), and by constant

@@ -38,11 +38,11 @@ class SeenBefore {
   const std::array<std::vector<Background>, kAges_s.size()>& moments() const { return moments_; }
 
   bool wasFree(int cell) const { return said(cell, Background::nearer); }
+  bool wasThere(int cell) const { return said(cell, Background::agrees); }
   /// The same surface was there at the oldest moment, and none since speaks against it.
   bool stood(int cell) const {
     return moments_.back()[static_cast<std::size_t>(cell)] == Background::agrees && !wasFree(cell);
   }
-  bool wasThere(int cell) const { return said(cell, Background::agrees); }
 
   void reset() { *this = SeenBefore(); }
 

@@ -61,6 +61,8 @@ class PeopleSegmenter {
   struct State;
   bool findPeople(const RgbdFrame& frame, const FlowImages& flow, const People& people);
   void keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result);
+  void expectObjects(const RgbdFrame& frame, const ModelView* view,
+                     const Eigen::Isometry3d& T_uncorrected_camera);
   void findObjects(const RgbdFrame& frame, const ModelView* view,
                    const Eigen::Isometry3d& T_uncorrected_camera, std::vector<std::uint8_t>& taken,
                    Segmentation& result);
