@@ -15,12 +15,9 @@
 namespace pf {
 namespace {
 
-// A block is compacted when more than one of so many surfels is to go, and now and then anyway:
-// moving all arrays costs more than carrying a few dead surfels for some frames.
-constexpr std::size_t kCompactionShare = 50;
-constexpr int kCompactionFrames = 10;
-// Blocks out of view are cleaned in turn, each once in so many frames.
-constexpr int kCleaningFrames = 30;
+// Blocks are swept in turn, each once in so many frames: counting its dead surfels, and moving all
+// arrays of one that has some, costs more than carrying them for a while.
+constexpr int kSweptInView = 10, kSweptElsewhere = 30;
 
 /// Where all of 3x3 pixels see at least that far (m); 0 where the centre sees nothing.
 POSEFUSION_SIMD_CLONES
@@ -156,11 +153,14 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   }
 }
 
-/// Sweeps up the dead surfels of the blocks in view, and in some of the others.
+/// Sweeps up the dead surfels of the blocks whose turn it is.
 std::size_t Fuser::clean(SurfelMap& map) {
-  std::vector<std::uint32_t> blocks = scratch_->visible;
-  for (auto i = static_cast<std::uint32_t>(map.frame() % kCleaningFrames); i < map.blocks_.size();
-       i += kCleaningFrames) {
+  const auto frame = static_cast<std::uint32_t>(map.frame());
+  std::vector<std::uint32_t> blocks;
+  for (const std::uint32_t i : scratch_->visible) {
+    if (i % kSweptInView == frame % kSweptInView) blocks.push_back(i);
+  }
+  for (std::uint32_t i = frame % kSweptElsewhere; i < map.blocks_.size(); i += kSweptElsewhere) {
     if (map.blocks_[i].any_unstable) blocks.push_back(i);
   }
   std::sort(blocks.begin(), blocks.end());
@@ -178,9 +178,7 @@ std::size_t Fuser::clean(SurfelMap& map) {
           if (map.blocks_[blocks[k]].any_unstable != (unstable > 0)) {
             map.blocks_.change(blocks[k]).any_unstable = unstable > 0;
           }
-          const bool turn =
-              map.frame() % kCompactionFrames == static_cast<int>(blocks[k] % kCompactionFrames);
-          if (dead * kCompactionShare <= s.size() && !(turn && dead > 0)) continue;
+          if (dead == 0) continue;
           count += map.removeFrom(blocks[k], [&](const SurfelArrays& surfels, std::size_t i) {
             return map.isDead(surfels, i);
           });
