@@ -102,6 +102,26 @@ TEST(SurfelUpdate, DepthBeyondTheRangeSeesThroughWhatIsNearer) {
   EXPECT_EQ(map.size(), 0U);
 }
 
+TEST(SurfelUpdate, WhatAPersonIsSeenThroughGoes) {
+  // A board was taken away by a person who now stands in its place, masked but for the rim.
+  const auto leftOfBoard = [](double person_m) {
+    SurfelMap map{MapConfig{}};
+    fuseOften(30, scene(3.0, 1.5), map);
+    FusionOptions options;
+    options.mask = cv::Mat::zeros(120, 160, CV_8UC1);
+    options.mask(cv::Rect(kBoard.tl() + cv::Point(2, 2), kBoard.br() - cv::Point(2, 2))).setTo(255);
+    options.input_depth_m = cv::Mat(120, 160, CV_32FC1, cv::Scalar(3.0));
+    options.input_depth_m(kBoard).setTo(person_m);
+    WorkingFrame masked = scene(3.0);
+    masked.depth_m(kBoard).setTo(0);
+    fuseOften(30, masked, map, options);
+    return stableNear(map, 1.5);
+  };
+  const std::size_t all = leftOfBoard(1.2);
+  EXPECT_GT(all, 1400U) << "nothing is known of what a person hides";
+  EXPECT_LT(leftOfBoard(2.2), all / 50) << "gone within a second";
+}
+
 TEST(SurfelUpdate, FusedPeopleGoWhereTheSegmenterFindsThem) {
   // Nothing behind the person has depth; a chair at the same depth is beside the mask.
   const cv::Rect person(60, 40, 20, 40);

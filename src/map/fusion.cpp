@@ -37,9 +37,32 @@ void nearestOf3x3(const float* above, const float* row, const float* below, floa
   }
 }
 
-/// `seen_m`: depth of the frame, that past the mapped range too.
-void findFreeSpace(const WorkingFrame& frame, cv::Mat& seen_m, cv::Mat& free_m) {
+std::string sizeText(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// How often an image of `size` is larger than the working frame. Throws InputError when it is no
+/// multiple of that.
+int factorOf(const cv::Size& size, const cv::Size& working, const char* name) {
+  const int factor = size.width / working.width;
+  if (factor < 1 || working * factor != size) {
+    throw InputError(std::string(name) + " is " + sizeText(size) + ", expected a multiple of " +
+                     sizeText(working));
+  }
+  return factor;
+}
+
+/// `seen_m`: depth of the frame, that past the mapped range, and that of what was taken out:
+/// whatever a ray meets, a person or the rim of one, all before that is free. `input_m`: work
+/// memory.
+void findFreeSpace(const WorkingFrame& frame, const cv::Mat& input_depth_m, cv::Mat& input_m,
+                   cv::Mat& seen_m, cv::Mat& free_m) {
   cv::max(frame.depth_m, frame.beyond_m, seen_m);
+  if (!input_depth_m.empty()) {
+    const int factor = factorOf(input_depth_m.size(), seen_m.size(), "the input depth");
+    shrinkDepth(input_depth_m, factor, frame.sensor, input_m);
+    cv::max(seen_m, input_m, seen_m);
+  }
   free_m.create(seen_m.size(), CV_32FC1);
   parallelFor(seen_m.rows, 16, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
@@ -50,23 +73,14 @@ void findFreeSpace(const WorkingFrame& frame, cv::Mat& seen_m, cv::Mat& free_m) 
   });
 }
 
-std::string sizeText(const cv::Size& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
 /// The depth of the people of a mask at the size of the working frame; empty when there are none.
 /// `full_m`: work memory.
 void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const WorkingFrame& frame,
                 cv::Mat& full_m, cv::Mat& person_m) {
-  const cv::Size size = frame.depth_m.size();
   person_m.release();
   if (mask.empty()) return;
-  const int factor = mask.cols / size.width;
-  if (factor < 1 || mask.cols / factor != size.width || mask.rows / factor != size.height ||
-      mask.type() != CV_8UC1) {
-    throw InputError("the mask of people is " + sizeText(mask.size()) +
-                     ", expected 8 bits a pixel and a multiple of " + sizeText(size));
-  }
+  const int factor = factorOf(mask.size(), frame.depth_m.size(), "the mask of people");
+  if (mask.type() != CV_8UC1) throw InputError("the mask of people has not 8 bits a pixel");
   if (input_depth_m.size() != mask.size() || input_depth_m.type() != CV_32FC1) {
     throw InputError("the input depth is " + sizeText(input_depth_m.size()) +
                      ", expected floats and the size of the mask of people, " +
@@ -95,7 +109,7 @@ double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& 
 
 /// What is kept between calls.
 struct Fuser::Scratch {
-  cv::Mat seen_m, full_m, people_m;
+  cv::Mat seen_m, full_m, people_m, input_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
@@ -123,7 +137,7 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
 void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                    const FusionOptions& options, SurfelMap& map, FusionCounts& counts) {
   Scratch& s = *scratch_;
-  findFreeSpace(frame, s.seen_m, s.evidence.free_m);
+  findFreeSpace(frame, options.input_depth_m, s.input_m, s.seen_m, s.evidence.free_m);
   s.evidence.measured.assign(frame, map.config().shrink);
   s.evidence.explained.clear(s.evidence.measured);
   s.evidence.known_behind.assign(frame.depth_m.size());

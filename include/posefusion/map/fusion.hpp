@@ -25,7 +25,8 @@ struct FusionOptions {
   /// Like `mask`: a person that is part of the map. A surfel seen there at the depth of
   /// `input_depth_m` was fused from a person by mistake: that contradicts it.
   cv::Mat in_map_mask;
-  /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out.
+  /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out. What a
+  /// person stands behind is not there: it counts as seen through.
   cv::Mat input_depth_m;
 
   /// Exposure: grey level of the map = gain * grey level of the frame + offset.
