@@ -17,8 +17,9 @@ constexpr double kAnotherPass_s = 10.0 / 3.0;
 // before they are older.
 constexpr double kUnnoticed_s = 1.5;
 constexpr float kUnnoticedFrames = 2;  // of contradiction, a frame
-// A frame that sees through a surfel, and through all around it, counts for this many frames.
-constexpr float kSeenFarThrough = 2;
+// Seen well behind, in all of 3x3 pixels: surer than a view that agrees, which may be of something
+// else at that depth.
+constexpr float kSeenThroughFrames = 2;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
 // What lies this far in front of a stable surface may have come there.
@@ -112,9 +113,8 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
       return false;
     }
   }
-  const float beyond_m = p.z + 1.5F * tolerance;
-  if (evidence_.free_m.at<float>(p.v, p.u) > beyond_m) {
-    contradictOne(s, i, isFarFromRims(p, beyond_m) ? kSeenFarThrough : 1.0F);
+  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * tolerance) {
+    contradictOne(s, i, kSeenThroughFrames);
     return false;
   }
   const Measurement m = measure(p);
@@ -141,20 +141,6 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
     result.supported.push_back(supportedAt(s, p));
   }
   merge(s, p, m, cosine);
-  return true;
-}
-
-/// Whether the frame sees farther than this (m) in all of 9x9 pixels: free space there is no rim of
-/// something whose place is not quite known.
-bool SurfelUpdate::isFarFromRims(const Place& p, float beyond_m) const {
-  constexpr int kStep = 3;  // free_m is of 3x3 pixels
-  const cv::Mat& free_m = evidence_.free_m;
-  for (int dv = -kStep; dv <= kStep; dv += kStep) {
-    const float* row = free_m.ptr<float>(std::clamp(p.v + dv, 0, free_m.rows - 1));
-    for (int du = -kStep; du <= kStep; du += kStep) {
-      if (!(row[std::clamp(p.u + du, 0, free_m.cols - 1)] > beyond_m)) return false;
-    }
-  }
   return true;
 }
 

@@ -86,7 +86,6 @@ class SurfelUpdate {
   bool updateOne(SurfelArrays& s, const Place& p, Result& result) const;
   float agreement(float z) const { return evidence_.measured.agreement(z); }
   bool isLayer(const Place& p, float measured, float cosine) const;
-  bool isFarFromRims(const Place& p, float beyond_m) const;
   void doubt(SurfelArrays& s, const Place& p) const;
   /// By so many frames like this one.
   void contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;

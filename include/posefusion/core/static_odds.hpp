@@ -17,8 +17,8 @@ namespace static_odds {
 /// Evidence of a frame at 30 Hz, for or against: a second of them makes 1 : 80 of 1 : 1.
 constexpr float kFrame = 4.4F / 30.0F;
 
-/// However often a thing was seen, it may be moved: 0.8 s of views that see through it are enough
-/// to make it unlikely, 1 s to remove it.
+/// However often a thing was seen, it may be moved: 0.5 s of views that see through it, each of
+/// which counts twice, are enough to remove it.
 constexpr float kMost = 24.0F * kFrame;
 
 /// What lies in front of a known surface has come there, perhaps a person that the detector misses:
