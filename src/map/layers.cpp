@@ -54,59 +54,76 @@ class Region {
   float reach_ = 0;
 };
 
-/// The stable surfels of a region, and where each is among all of the map.
-struct StableSurfels {
-  StableSurfels(const SurfelMap& map, const Region& region, const std::vector<char>& named) {
-    std::size_t index = 0;
-    for (std::size_t i = 0; i < map.blocks().size(); ++i) {
-      const SurfelArrays& surfels = map.blocks()[i].surfels;
-      if (region.has(i)) add(map, surfels, index, named[i]);
-      index += surfels.size();
+/// The stable surfels of a region: where they are in space, and in the map. What else is asked of
+/// them is read there: beside mapping, a second copy of the map is memory enough.
+class StableSurfels {
+ public:
+  StableSurfels(const SurfelMap& map, const Region& region, const std::vector<char>& named)
+      : map_(map), named_(named) {
+    for (std::uint32_t block = 0; block < map.blocks().size(); ++block) {
+      if (!region.has(block)) continue;
+      const SurfelArrays& s = map.blocks()[block].surfels;
+      for (std::uint32_t i = 0; i < s.size(); ++i) {
+        if (!map.isStable(s, i)) continue;
+        places_.push_back({block, i});
+        positions_.emplace_back(s.x[i], s.y[i], s.z[i]);
+        largest_radius_ = std::max(largest_radius_, s.radius[i]);
+      }
     }
   }
 
-  void add(const SurfelMap& map, const SurfelArrays& s, std::size_t first, char named) {
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      if (!map.isStable(s, i)) continue;
-      indices.push_back(first + i);
-      is_named.push_back(named);
-      positions.emplace_back(s.x[i], s.y[i], s.z[i]);
-      normals.emplace_back(s.nx[i], s.ny[i], s.nz[i]);
-      radii.push_back(s.radius[i]);
-      created.push_back(s.created[i]);
-      largest_radius = std::max(largest_radius, s.radius[i]);
-    }
+  struct Place {
+    std::uint32_t block, slot;
+  };
+  std::size_t size() const { return places_.size(); }
+  const Place& place(std::size_t i) const { return places_[i]; }
+  const std::vector<Eigen::Vector3f>& positions() const { return positions_; }
+
+  /// What the line through surfel i along its normal meets within the distances of a layer.
+  Eigen::AlignedBox3f boxOf(std::size_t i) const {
+    return lineOf(i).box(kMostLayer_m, largest_radius_);
   }
 
-  /// Whether the line through surfel i along its normal meets the disc of k within the distances of
-  /// a layer.
-  bool areLayers(std::size_t i, std::size_t k) const {
+  /// Whether i is a layer of the older k, one of them in a block that is asked about.
+  bool isYoungerLayer(std::size_t i, std::size_t k) const {
+    if (named_[places_[i].block] == 0 && named_[places_[k].block] == 0) return false;
+    const SurfelArrays& other = surfelsOf(k);
+    const std::uint32_t slot = places_[k].slot;
+    if (other.created[slot] >= surfelsOf(i).created[places_[i].slot]) return false;
     float at = 0;
-    if (!lineOf(i).meets(positions[k], normals[k], radii[k], kSameFacing, at)) return false;
+    if (!lineOf(i).meets(positions_[k], normalOf(k), other.radius[slot], kSameFacing, at)) {
+      return false;
+    }
     return std::abs(at) >= kLeastLayer_m && std::abs(at) <= kMostLayer_m;
   }
 
-  NormalLine lineOf(std::size_t i) const { return {positions[i], normals[i]}; }
+ private:
+  const SurfelArrays& surfelsOf(std::size_t i) const {
+    return map_.blocks()[places_[i].block].surfels;
+  }
+  Eigen::Vector3f normalOf(std::size_t i) const {
+    const SurfelArrays& s = surfelsOf(i);
+    const std::uint32_t slot = places_[i].slot;
+    return {s.nx[slot], s.ny[slot], s.nz[slot]};
+  }
+  NormalLine lineOf(std::size_t i) const { return {positions_[i], normalOf(i)}; }
 
-  std::vector<std::size_t> indices;
-  std::vector<char> is_named;  ///< in one of the blocks that were asked about
-  std::vector<Eigen::Vector3f> positions, normals;
-  std::vector<float> radii;
-  std::vector<std::int32_t> created;
-  float largest_radius = 0;
+  const SurfelMap& map_;
+  const std::vector<char>& named_;
+  std::vector<Place> places_;
+  std::vector<Eigen::Vector3f> positions_;
+  float largest_radius_ = 0;
 };
 
-/// Marks those of a region that are to go.
-void findYoungerLayers(const StableSurfels& stable, std::vector<char>& doomed) {
-  const PointGrid grid(stable.positions);
-  parallelFor(stable.indices.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
+/// Marks those of a region that are to go. `first`: of each block's surfels among all of the map.
+void findYoungerLayers(const StableSurfels& stable, const std::vector<std::size_t>& first,
+                       std::vector<char>& doomed) {
+  const PointGrid grid(stable.positions());
+  parallelFor(stable.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      char& gone = doomed[stable.indices[i]];
-      grid.visit(stable.lineOf(i).box(kMostLayer_m, stable.largest_radius), [&](std::size_t k) {
-        const bool concerns = stable.is_named[i] != 0 || stable.is_named[k] != 0;
-        if (concerns && stable.created[k] < stable.created[i] && gone == 0) {
-          gone = stable.areLayers(i, k);
-        }
+      char& gone = doomed[first[stable.place(i).block] + stable.place(i).slot];
+      grid.visit(stable.boxOf(i), [&](std::size_t k) {
+        if (gone == 0) gone = stable.isYoungerLayer(i, k);
       });
     }
   });
@@ -123,9 +140,13 @@ std::size_t removeYoungerLayers(SurfelMap& map, const std::vector<std::uint32_t>
     is_named[block] = 1;
     fragments.insert(map.blocks()[block].fragment);
   }
+  std::vector<std::size_t> first(1, 0);
+  for (const SurfelBlock& block : map.blocks()) {
+    first.push_back(first.back() + block.surfels.size());
+  }
   for (const int fragment : fragments) {
     const Region region(map, fragment, is_named);
-    if (!region.isEmpty()) findYoungerLayers(StableSurfels(map, region, is_named), doomed);
+    if (!region.isEmpty()) findYoungerLayers(StableSurfels(map, region, is_named), first, doomed);
   }
   std::size_t index = 0;  // surfels come in the order of forEachSurfel()
   return map.removeIf([&](const SurfelArrays&, std::size_t) { return doomed[index++] != 0; });

@@ -12,7 +12,7 @@ namespace pf {
 namespace {
 
 /// Frames that wait between two threads: enough to even out slow frames, few megabytes.
-constexpr std::ptrdiff_t kFramesAhead = 4;
+constexpr std::ptrdiff_t kFramesAhead = 2;
 
 /// Items handed from one thread to the next; nothing marks the end.
 template <typename Item>

@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/pipeline.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <utility>
 
 #include "posefusion/core/stopwatch.hpp"
 
 namespace pf {
+namespace {
+
+/// What was freed goes back to the system. The refinement needs as much as mapping did, in blocks
+/// of other sizes, which would come on top.
+void giveBackFreedMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+}  // namespace
 
 Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
     : config_(config),
@@ -19,6 +34,7 @@ Pipeline::Pipeline(const Config& config, std::unique_ptr<PoseDetector> detector)
 std::string Pipeline::finish() {
   loop_thread_.finish(mapper_);
   if (!config_.loop.enabled || !config_.loop.refine_at_end) return {};
+  giveBackFreedMemory();
   return mapper_.refine().text();
 }
 
