@@ -18,6 +18,8 @@ namespace {
 // Blocks are swept in turn, each once in so many frames: counting its dead surfels, and moving all
 // arrays of one that has some, costs more than carrying them for a while.
 constexpr int kSweptInView = 10, kSweptElsewhere = 30;
+// At once where a frame refuted more than one of so many surfels: things that went away.
+constexpr std::size_t kAtOnceShare = 50;
 
 /// Where all of 3x3 pixels see at least that far (m); 0 where the centre sees nothing.
 POSEFUSION_SIMD_CLONES
@@ -112,6 +114,7 @@ struct Fuser::Scratch {
   cv::Mat seen_m, full_m, people_m, input_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
+  std::vector<std::uint32_t> emptied;  // blocks of which it refuted much
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
 };
 
@@ -159,18 +162,22 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
       update.contradict(results[k], map.blocks_.change(ranges[k].block).surfels);
     }
   });
+  s.emptied.clear();
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     counts.merged += results[k].merged;
+    if (results[k].refuted * kAtOnceShare > ranges[k].end - ranges[k].begin) {
+      s.emptied.push_back(ranges[k].block);
+    }
     SurfelBlock& block = map.blocks_.change(ranges[k].block);
     block.bounds.extend(results[k].moved);
     block.changed = map.frame();
   }
 }
 
-/// Sweeps up the dead surfels of the blocks whose turn it is.
+/// Sweeps up the dead surfels of the blocks that lost much, or whose turn it is.
 std::size_t Fuser::clean(SurfelMap& map) {
   const auto frame = static_cast<std::uint32_t>(map.frame());
-  std::vector<std::uint32_t> blocks;
+  std::vector<std::uint32_t> blocks = scratch_->emptied;
   for (const std::uint32_t i : scratch_->visible) {
     if (i % kSweptInView == frame % kSweptInView) blocks.push_back(i);
   }

@@ -54,7 +54,7 @@ SurfelUpdate::Result SurfelUpdate::update(const SurfelRange& range, SurfelArrays
     const std::size_t count = findPlaces(s, range, seen, next, places);
     for (std::size_t k = 0; k < count; ++k) {
       if (!updateOne(s, places[k], result)) {
-        doubt(s, places[k]);
+        doubt(s, places[k], result);
         continue;
       }
       const std::size_t i = places[k].surfel;
@@ -109,12 +109,12 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
   if (!evidence_.person_m.empty()) {
     const float person = evidence_.person_m.at<float>(p.v, p.u);
     if (person > 0 && std::abs(person - p.z) <= tolerance) {
-      contradictOne(s, i);
+      if (contradictOne(s, i)) ++result.refuted;
       return false;
     }
   }
   if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * tolerance) {
-    contradictOne(s, i, kSeenThroughFrames);
+    if (contradictOne(s, i, kSeenThroughFrames)) ++result.refuted;
     return false;
   }
   const Measurement m = measure(p);
@@ -146,15 +146,18 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
 
 /// Surfels made close to a person not long ago, and not seen now, may have been mapped from that
 /// person before detection: they are removed also where nothing is seen behind them.
-void SurfelUpdate::doubt(SurfelArrays& s, const Place& p) const {
+void SurfelUpdate::doubt(SurfelArrays& s, const Place& p, Result& result) const {
   const bool is_young = s.created[p.surfel] > map_.frame() - unnoticed_;
-  if (is_young && evidence_.near_people.has(p.u, p.v, p.z))
-    contradictOne(s, p.surfel, kUnnoticedFrames);
+  if (is_young && evidence_.near_people.has(p.u, p.v, p.z) &&
+      contradictOne(s, p.surfel, kUnnoticedFrames)) {
+    ++result.refuted;
+  }
 }
 
-void SurfelUpdate::contradictOne(SurfelArrays& s, std::size_t i, float frames) const {
-  if (!options_.may_remove_stable && map_.isStable(s, i)) return;
+bool SurfelUpdate::contradictOne(SurfelArrays& s, std::size_t i, float frames) const {
+  if (!options_.may_remove_stable && map_.isStable(s, i)) return false;
   s.odds[i] = static_odds::contradicted(s.odds[i], worth_ * frames);
+  return s.odds[i] <= static_odds::kGone;
 }
 
 /// Its depth is where the surfel's ray meets the plane measured at the pixel next to it; the

@@ -49,6 +49,7 @@ class SurfelUpdate {
   };
   struct Result {
     std::size_t merged = 0;     ///< surfels that this frame supports
+    std::size_t refuted = 0;    ///< surfels that this frame removes
     Eigen::AlignedBox3f moved;  ///< the new places of those
     std::vector<Layer> layers;
     bool stable_too = false;           ///< whether `supported` has stable surfels
@@ -86,9 +87,9 @@ class SurfelUpdate {
   bool updateOne(SurfelArrays& s, const Place& p, Result& result) const;
   float agreement(float z) const { return evidence_.measured.agreement(z); }
   bool isLayer(const Place& p, float measured, float cosine) const;
-  void doubt(SurfelArrays& s, const Place& p) const;
-  /// By so many frames like this one.
-  void contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;
+  void doubt(SurfelArrays& s, const Place& p, Result& result) const;
+  /// By so many frames like this one. True when that refutes it.
+  bool contradictOne(SurfelArrays& s, std::size_t i, float frames = 1) const;
   Measurement measure(const Place& p) const;
   void explain(const Place& p, std::int32_t made) const;
   Supported supportedAt(const SurfelArrays& s, const Place& p) const;
