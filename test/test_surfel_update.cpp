@@ -152,6 +152,14 @@ TEST(SurfelUpdate, FusedPeopleGoWhereTheSegmenterFindsThem) {
   EXPECT_THROW(Fuser().fuse(masked, kIdentity, map, options), InputError);
 }
 
+TEST(SurfelUpdate, MasksMayHaveARestOfPixelsBesideTheWorkingFrame) {
+  SurfelMap map{MapConfig{}};
+  FusionOptions options;
+  options.mask = cv::Mat::zeros(241, 321, CV_8UC1);
+  options.input_depth_m = cv::Mat(241, 321, CV_32FC1, cv::Scalar(3.0));
+  EXPECT_NO_THROW(Fuser().fuse(scene(3.0), kIdentity, map, options));
+}
+
 /// A person at 1.5 m in the right half of the board's place.
 const cv::Rect kFound(80, 40, 20, 40);
 

@@ -43,11 +43,11 @@ std::string sizeText(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-/// How often an image of `size` is larger than the working frame. Throws InputError when it is no
-/// multiple of that.
+/// How often an image of `size` is larger than the working frame, a rest of pixels at its right and
+/// lower border left out. Throws InputError when it is no multiple of that.
 int factorOf(const cv::Size& size, const cv::Size& working, const char* name) {
   const int factor = size.width / working.width;
-  if (factor < 1 || working * factor != size) {
+  if (factor < 1 || cv::Size(size.width / factor, size.height / factor) != working) {
     throw InputError(std::string(name) + " is " + sizeText(size) + ", expected a multiple of " +
                      sizeText(working));
   }
@@ -82,7 +82,10 @@ void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const Working
   person_m.release();
   if (mask.empty()) return;
   const int factor = factorOf(mask.size(), frame.depth_m.size(), "the mask of people");
-  if (mask.type() != CV_8UC1) throw InputError("the mask of people has not 8 bits a pixel");
+  if (mask.type() != CV_8UC1) {
+    throw InputError("the mask of people has OpenCV's type " + std::to_string(mask.type()) +
+                     ", expected 8 bits a pixel");
+  }
   if (input_depth_m.size() != mask.size() || input_depth_m.type() != CV_32FC1) {
     throw InputError("the input depth is " + sizeText(input_depth_m.size()) +
                      ", expected floats and the size of the mask of people, " +
