@@ -27,7 +27,7 @@ endfunction()
 
 option(POSEFUSION_TOGETHER "Compile some sources of a folder at once; OFF: each by itself" ON)
 
-# Compiles five sources of a folder at once: what they all include and instantiate is compiled once then. So names in the
+# Compiles six sources of a folder at once: what they all include and instantiate is compiled once then. So names in the
 # unnamed namespaces of a folder differ from each other.
 function(posefusion_compile_together target)
   if(NOT POSEFUSION_TOGETHER OR CMAKE_VERSION VERSION_LESS 3.18)
@@ -41,7 +41,7 @@ function(posefusion_compile_together target)
     if(NOT DEFINED count_${name})
       set(count_${name} 0)
     endif()
-    math(EXPR batch "${count_${name}} / 5")
+    math(EXPR batch "${count_${name}} / 6")
     math(EXPR count_${name} "${count_${name}} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}_${batch})
   endforeach()

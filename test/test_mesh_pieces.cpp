@@ -39,7 +39,7 @@ SurfelArrays sheet(float first_x_m, float side_m = 3) {
   return s;
 }
 
-SurfelMap mapOf(const SurfelArrays& surfels) {
+SurfelMap restoredMap(const SurfelArrays& surfels) {
   SurfelMap map{MapConfig{}};
   map.restore({{kFirstFragment, surfels}}, 9);
   return map;
@@ -98,7 +98,7 @@ std::vector<Triangle> wholeMesh(const SurfelMap& map) {
 }
 
 TEST(MeshPieces, TogetherTheyAreTheMesh) {
-  const SurfelMap map = mapOf(sheet(-1));
+  const SurfelMap map = restoredMap(sheet(-1));
   MeshPieces pieces(coarse(), 1);
   Listener listener;
   const auto first = pieces.update(map);
@@ -109,7 +109,7 @@ TEST(MeshPieces, TogetherTheyAreTheMesh) {
 }
 
 TEST(MeshPieces, OnlyWhatIsNearAChangeIsMadeAnew) {
-  SurfelMap map = mapOf(sheet(-1));
+  SurfelMap map = restoredMap(sheet(-1));
   MeshPieces pieces(coarse(), 0.5F);
   Listener listener;
   const std::size_t all = pieces.update(map).size();
@@ -129,8 +129,8 @@ TEST(MeshPieces, OnlyWhatIsNearAChangeIsMadeAnew) {
 TEST(MeshPieces, AnotherMapTakesThePlaceOfTheOldOne) {
   MeshPieces pieces(coarse(), 1);
   Listener listener;
-  listener.take(pieces.update(mapOf(sheet(-1))));
-  const SurfelMap other = mapOf(sheet(5, 1));
+  listener.take(pieces.update(restoredMap(sheet(-1))));
+  const SurfelMap other = restoredMap(sheet(5, 1));
   const auto changed = pieces.update(other);
   EXPECT_TRUE(std::any_of(changed.begin(), changed.end(),
                           [](const auto& p) { return p.mesh.triangles.empty(); }));
@@ -141,7 +141,7 @@ TEST(MeshPieces, AnotherMapTakesThePlaceOfTheOldOne) {
 }
 
 TEST(MeshPieces, WhatIsInterruptedGoesOnWithTheNextCall) {
-  const SurfelMap map = mapOf(sheet(-1));
+  const SurfelMap map = restoredMap(sheet(-1));
   MeshPieces pieces(coarse(), 1);
   Listener listener;
   int asked = 0;

@@ -14,7 +14,7 @@ CODE = {".hpp", ".cpp", ".py", ".sh", ".in", ".html", ".css", ".js"}
 # The folders of include/ and src/, lowest first: each includes only those before it.
 LAYERS = ("core", "config", "calibration", "blur", "frame", "pose", "tracking", "segmentation", "robot", "graph", "map",
           "mesh", "grid",
-          "loop", "slam", "io", "evaluation", "run", "python", "simulator", "ros", "openni2",
+          "loop", "slam", "io", "evaluation", "run", "python", "simulator", "bags", "ros", "openni2",
           "nodelets", "tools", "viewer")
 FORMATTER = "version 14."  # of clang-format: other versions format some lines differently
 
@@ -133,7 +133,7 @@ class Scripts(unittest.TestCase):
 
 class Repository(unittest.TestCase):
     def test_core_includes_no_ros(self):
-        outside = ("src/nodelets/", "src/ros/", "src/openni2/", "src/tools/", "src/viewer/",
+        outside = ("src/nodelets/", "src/bags/", "src/ros/", "src/openni2/", "src/tools/", "src/viewer/",
                    "include/posefusion_ros/")
         ros = re.compile(r'#include\s*[<"](ros|nodelet|pluginlib|tf2_ros|tf2_eigen|cv_bridge|\w+_msgs|'
                          r'message_filters|image_transport|std_srvs|dynamic_reconfigure|'

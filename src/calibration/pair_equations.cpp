@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/calibration/pair_equations.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -150,10 +151,10 @@ void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
   equations.H += sums.half + sums.half.transpose();
   equations.H.diagonal() += sums.squares;
   const Matrix6d W = slackInformation(model).asDiagonal();
-  const Eigen::LDLT<Matrix6d> P(sums.P + W);
-  step.own = -P.solve(sums.p - W * c);
-  step.by_field = -P.solve(sums.C);
-  step.by_views = P.solve(W);
+  const Matrix6d P = sums.P + W;
+  step.own = -solve(P, sums.p - W * c);
+  step.by_field = -solve(P, sums.C);
+  step.by_views = solve(P, W);
   step.H_views = W - W * step.by_views;
   step.g_views = W * (c - step.own);
   step.H_views_field = -W * step.by_field;
@@ -173,7 +174,7 @@ ViewPair fitted(ViewPair pair, const std::vector<ViewSurface>& surfaces, const D
                    sums.P.noalias() += weight * by_x * by_x.transpose();
                    sums.p += weight * r.e * by_x;
                  });
-    pair.T_to_from = expSe3(-sums.P.ldlt().solve(sums.p)) * pair.T_to_from;
+    pair.T_to_from = expSe3(-solve(sums.P, sums.p)) * pair.T_to_from;
   }
   return pair;
 }

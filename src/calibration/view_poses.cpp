@@ -3,6 +3,8 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "posefusion/core/symmetric.hpp"
+
 namespace pf {
 namespace {
 
@@ -48,7 +50,7 @@ void ViewPoses::eliminate(const std::vector<ViewPair>& pairs, const std::vector<
                           FieldEquations& sum) {
   const Eigen::Index unknowns = rowOf(T_map_view_.size()), nodes = sum.g.size();
   Blocks blocks;
-  const Matrix6d held = independentCovariance(kHeld_m, kHeld_rad).inverse();
+  const Matrix6d held = inverse(independentCovariance(kHeld_m, kHeld_rad));
   for (std::size_t i = 0; i < T_map_view_.size(); ++i) addBlock(i, i, held, blocks);
   // The equations of the views with the field, and without it.
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns, nodes + 1);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/evaluation/covariance_check.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 
 namespace pf {
@@ -30,11 +30,8 @@ double sigmasOf(double error, double variance) {
 }
 
 bool isInEllipsoid(const Vector6d& error, const Matrix6d& covariance) {
-  const Eigen::LDLT<Matrix6d> factors(covariance);
-  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0.0)) {
-    return error.isZero(0.0);
-  }
-  return error.dot(factors.solve(error)) <= kEllipsoid;
+  if (!isPositiveDefinite(covariance)) return error.isZero(0.0);
+  return mahalanobis2(error, covariance) <= kEllipsoid;
 }
 
 }  // namespace

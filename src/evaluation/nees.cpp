@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/evaluation/nees.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 
 namespace pf {
@@ -38,12 +38,11 @@ struct MotionError {
 };
 
 MotionError normalised(const Vector6d& error, const Matrix6d& covariance) {
-  const Eigen::LDLT<Matrix6d> factors(covariance);
-  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0.0)) {
+  if (!isPositiveDefinite(covariance)) {
     const double all = error.isZero(0.0) ? 0.0 : std::numeric_limits<double>::infinity();
     return {all, Vector6d::Constant(all)};
   }
-  return {error.dot(factors.solve(error)),
+  return {mahalanobis2(error, covariance),
           error.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt())};
 }
 
@@ -52,7 +51,7 @@ MotionError errorOf(const KnownPose& from, const KnownPose& to) {
   const Vector6d error =
       logSe3(T_to_from * from.estimate.T_map_camera.inverse() * to.estimate.T_map_camera);
   const Matrix6d A = adjoint(T_to_from);
-  return normalised(error, to.estimate.covariance + A * from.estimate.covariance * A.transpose());
+  return normalised(error, to.estimate.covariance + propagated(A, from.estimate.covariance));
 }
 
 /// Where the motion from each pose ends; nothing where there is no pose in time.

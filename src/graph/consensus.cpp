@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/graph/consensus.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <numeric>
 
 #include "posefusion/core/parallel.hpp"
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/graph/drift.hpp"
 
 namespace pf {
@@ -97,10 +97,10 @@ class Consistency {
     const Vector6d error = logSe3(a.T_from_to.inverse() * along_from * after_from);
     // Twists of what lies on the way, seen from the camera a.to.
     const Matrix6d by_from = adjoint(after_from.inverse()), by_b = adjoint(along_to.inverse());
-    const Matrix6d covariance =
-        a.covariance + floor_ + by_b * (b.covariance + floor_) * by_b.transpose() +
-        by_from * wayCovariance(a.from, b.from) * by_from.transpose() + wayCovariance(b.to, a.to);
-    return error.dot(covariance.llt().solve(error)) <= config_.max_chi_square;
+    const Matrix6d covariance = a.covariance + floor_ + propagated(by_b, b.covariance + floor_) +
+                                propagated(by_from, wayCovariance(a.from, b.from)) +
+                                wayCovariance(b.to, a.to);
+    return mahalanobis2(error, covariance) <= config_.max_chi_square;
   }
 
   const GraphConfig& config_;

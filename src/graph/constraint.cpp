@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/graph/constraint.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 
@@ -20,7 +21,7 @@ PoseError poseError(const Eigen::Isometry3d& T_map_from, const Eigen::Isometry3d
 double chiSquare(const PoseConstraint& constraint, const Eigen::Isometry3d& T_map_from,
                  const Eigen::Isometry3d& T_map_to) {
   const Vector6d twist = logSe3(constraint.T_from_to.inverse() * T_map_from.inverse() * T_map_to);
-  return twist.dot(constraint.covariance.llt().solve(twist));
+  return mahalanobis2(twist, constraint.covariance);
 }
 
 }  // namespace pf

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/graph/expected_place.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/graph/drift.hpp"
 
 namespace pf {
@@ -37,7 +36,7 @@ double ExpectedPlace::chiSquare(const MapPose& found) const {
   const int steps = mostStepsNear(T_found.translation(), 0.0);
   const Matrix6d covariance = covariance_ + driftCovariance(config_, steps, off_m);
   const Vector6d error = logSe3(T_expected.inverse() * T_found);
-  return error.dot(covariance.llt().solve(error));
+  return mahalanobis2(error, covariance);
 }
 
 bool ExpectedPlace::admitsNear(const MapPose& place, double reach_m) const {
@@ -48,9 +47,8 @@ bool ExpectedPlace::admitsNear(const MapPose& place, double reach_m) const {
   const Matrix6d covariance = covariance_ + driftCovariance(config_, steps, off_m + reach_m);
   // The shift of a twist is no shorter than that of its motion, and what is known of the rotation
   // only adds to the distance.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shift(covariance.topLeftCorner<3, 3>(),
-                                                             Eigen::EigenvaluesOnly);
-  return off_m - reach_m <= std::sqrt(kMostChiSquare * shift.eigenvalues().maxCoeff());
+  const double most = eigenOf(covariance.topLeftCorner<3, 3>()).values[2];
+  return off_m - reach_m <= std::sqrt(kMostChiSquare * most);
 }
 
 int ExpectedPlace::mostStepsNear(const Eigen::Vector3d& position_m, double reach_m) const {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph_checks.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -41,8 +41,7 @@ void throwUnlessUsable(const Keyframe& keyframe) {
 void throwUnlessUsable(const PoseConstraint& c) {
   const std::string name = "constraint " + std::to_string(c.from) + " -> " + std::to_string(c.to);
   if (!isRigid(c.T_from_to)) throw std::invalid_argument(name + ": no rigid motion");
-  const Eigen::LLT<Matrix6d> root(c.covariance);
-  if (!c.covariance.allFinite() || root.info() != Eigen::Success) {
+  if (!isPositiveDefinite(c.covariance)) {
     throw std::invalid_argument(name + ": the covariance is not positive definite");
   }
 }

@@ -2,6 +2,8 @@
 // Keyframes that others represent: a graph grows with the places seen, not with time.
 #include <algorithm>
 
+#include "posefusion/core/symmetric.hpp"
+
 #include "posefusion/graph/pose_graph.hpp"
 
 namespace pf {
@@ -23,7 +25,7 @@ PoseConstraint handedOn(const PoseConstraint& c, const Keyframe& retired, const 
     const Matrix6d A = adjoint(c.T_from_to.inverse());
     on.from = carrier.id;
     on.T_from_to = orthonormalised(T_carrier_retired * c.T_from_to);
-    on.covariance = c.covariance + A * tie * A.transpose();
+    on.covariance = c.covariance + propagated(A, tie);
   } else {
     const Matrix6d A = adjoint(T_carrier_retired);
     on.to = carrier.id;
@@ -99,7 +101,7 @@ void PoseGraph::retire(int keyframe, const PoseConstraint& tie) {
   Matrix6d covariance = tie.covariance;
   if (tie.from == keyframe) {  // it is of the carrier's camera
     const Matrix6d A = adjoint(tie.T_from_to);
-    covariance = A * covariance * A.transpose();
+    covariance = propagated(A, covariance);
   }
   for (Keyframe& follower : keyframes_) {
     if (follower.follows == keyframe) follower.follows = carrier.id;

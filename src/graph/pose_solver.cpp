@@ -3,8 +3,9 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
 #include <array>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -23,8 +24,7 @@ class PoseFactor : public ceres::SizedCostFunction<6, 6, 6> {
   PoseFactor(const PoseConstraint& constraint, const Eigen::Isometry3d& T_map_from,
              const Eigen::Isometry3d& T_map_to)
       : T_map_from_(T_map_from), T_map_to_(T_map_to), T_from_to_(constraint.T_from_to) {
-    const Eigen::LLT<Matrix6d> root(constraint.covariance);
-    whitening_ = root.matrixL().solve(Matrix6d::Identity());
+    whitening_ = whitening(constraint.covariance);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/grid/floor.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -73,8 +73,7 @@ std::pair<Vector3d, double> fitted(const FacingUp& found, const Vector3d& up, do
   mean /= static_cast<double>(points.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points) scatter += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  Vector3d normal = solver.eigenvectors().col(0);
+  Vector3d normal = eigenOf(scatter).vectors.col(0);
   if (normal.dot(up) < 0) normal = -normal;
   // A floor of which little was seen does not give its tilt.
   if (normal.dot(up) < kNarrow) normal = up;

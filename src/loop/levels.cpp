@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "posefusion/core/symmetric.hpp"
 
 #include "posefusion/loop/map_points.hpp"
 
@@ -75,8 +76,7 @@ Eigen::Vector3d fitLargest(const OrientedPoints& p, const Eigen::Vector3d& up,
     const Eigen::Vector3d d = point(p, members[k]) - mean;
     scatter += d * d.transpose();
   }
-  const Eigen::Vector3d fitted =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  const Eigen::Vector3d fitted = eigenOf(scatter).vectors.col(0);
   return fitted.dot(up) < 0 ? Eigen::Vector3d(-fitted) : fitted;
 }
 

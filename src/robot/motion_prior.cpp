@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/robot/motion_prior.hpp"
 
-#include <Eigen/Cholesky>
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -12,10 +12,10 @@ constexpr double kMostChiSquare = 22.46;
 
 std::optional<MotionPrior> combined(const MotionPrior& a, const MotionPrior& b) {
   const Vector6d difference = logSe3(a.T_before_after.inverse() * b.T_before_after);
-  const Eigen::LLT<Matrix6d> sum(a.covariance + b.covariance);
-  if (!(difference.dot(sum.solve(difference)) <= kMostChiSquare)) return std::nullopt;
+  const Matrix6d sum = a.covariance + b.covariance;
+  if (!(mahalanobis2(difference, sum) <= kMostChiSquare)) return std::nullopt;
   // As a Kalman filter takes a measurement of the whole state in.
-  const Matrix6d gain = sum.solve(a.covariance).transpose();
+  const Matrix6d gain = solve(sum, a.covariance).transpose();
   MotionPrior both;
   both.T_before_after = orthonormalised(a.T_before_after * expSe3(gain * difference));
   const Matrix6d left = a.covariance - gain * a.covariance;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "posefusion/core/stamps.hpp"
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/slam/localiser.hpp"
 
 namespace pf {
@@ -70,14 +71,14 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
   // nothing moves, would gain weight with every frame.
   const Matrix6d& before =
       location.has_odometry ? previous_.covariance_to_view : previous_.covariance;
-  prior.covariance = A * before * A.transpose() + expected.covariance;
+  prior.covariance = propagated(A, before) + expected.covariance;
   return prior;
 }
 
 void Localiser::carry(const MotionPrior& step, bool is_known) {
   const Matrix6d A = adjoint(step.T_before_after.inverse());
   carried_.T_map_camera = orthonormalised(carried_.T_map_camera * step.T_before_after);
-  carried_.covariance = A * carried_.covariance * A.transpose() + step.covariance;
+  carried_.covariance = propagated(A, carried_.covariance) + step.covariance;
   carried_.is_measured = carried_.is_measured && is_known;
 }
 

@@ -4,6 +4,7 @@
 #include "mapper_state.hpp"
 #include "posefusion/core/se3.hpp"
 #include "posefusion/core/stamps.hpp"
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -116,7 +117,7 @@ void Mapper::State::placeFragment(const PlaceVerdict& seen) {
   place.constraint.to = keyframe.id;
   place.constraint.T_from_to =
       keyframes[static_cast<std::size_t>(near)].T_map_camera.inverse() * T_other_keyframe;
-  place.constraint.covariance = A * seen.alignment.covariance * A.transpose();
+  place.constraint.covariance = propagated(A, seen.alignment.covariance);
   const bool again =
       seen_at && seen_at->other == place.other &&
       isWithin(T_other_keyframe.inverse() * seen_at->T_other_fragment * keyframe.T_map_camera,

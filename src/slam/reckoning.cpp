@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/robot/motion_prior.hpp"
 
 namespace pf {
@@ -37,7 +38,7 @@ void Reckoning::move(const Eigen::Isometry3d& T_before_after, const Matrix6d& co
   if (blind_s_ > 0) steps_ += gap(blind_s_);
   blind_s_ = 0;
   const Matrix6d A = adjoint(T_before_after.inverse());
-  steps_ = A * steps_ * A.transpose() + covariance;
+  steps_ = propagated(A, steps_) + covariance;
   way_m_ += T_before_after.translation().norm();
   turn_rad_ += angleOf(T_before_after);
   elapsed_s_ += elapsed_s;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/slam/verdict.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <cstdio>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -34,9 +35,9 @@ std::string stepText(const Eigen::Isometry3d& step, const char* what) {
 Matrix6d covarianceOfDifference(const PosePrior& prior, const TrackingResult& r) {
   const Matrix6d& P = prior.covariance;
   const Matrix6d& C = r.covariance;
-  const Matrix6d of_prior = r.prior_weight * P.ldlt().solve(C).transpose();
+  const Matrix6d of_prior = r.prior_weight * solve(P, C).transpose();
   const Matrix6d of_images = Matrix6d::Identity() - of_prior;
-  const Matrix6d sum = of_images * C + of_images * P * of_images.transpose();
+  const Matrix6d sum = of_images * C + propagated(of_images, P);
   return 0.5 * (sum + sum.transpose()) + independentCovariance(kUnfinished_m, kUnfinished_rad);
 }
 
@@ -76,7 +77,7 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
   const std::string text = stepText(difference, "from the prediction");
   const Vector6d error = logSe3(difference);
   const Matrix6d covariance = covarianceOfDifference(prior, r);
-  const bool is_expected = error.dot(covariance.ldlt().solve(error)) < kMaxMahalanobis2;
+  const bool is_expected = mahalanobis2(error, covariance) < kMaxMahalanobis2;
   // Anything may have happened where nothing was measured: the images alone have to prove it.
   if (is_expected) {
     return {FrameOutcome::fused, text, prior.is_measured ? Proof::none : Proof::likely};

@@ -36,7 +36,7 @@ std::vector<Constraints> byOrigin(const std::vector<PoseConstraint>& constraints
   return kinds;
 }
 
-void printNees(const char* name, const NeesShare& nees) {
+void printConstraintNees(const char* name, const NeesShare& nees) {
   if (nees.windows == 0) return;
   std::printf("NEES of %-16s %.1f %% of %zu within %.2f..%.2f; %.1f %% below, %.1f %% above; ",
               name, 100 * nees.inside, nees.windows, nees.low, nees.high, 100 * nees.too_low,
@@ -81,7 +81,7 @@ void evaluateLoops(const std::string& map, const std::string& truth, bool json) 
   std::printf("error                    %.4f m median, %.4f m worst; %.3f, %.3f deg\n",
               shift.median, shift.max, turn.median, turn.max);
   for (const Constraints& kind : byOrigin(content.constraints)) {
-    printNees(kind.name, neesOfConstraints(poses, content.keyframes, kind.all));
+    printConstraintNees(kind.name, neesOfConstraints(poses, content.keyframes, kind.all));
   }
 }
 

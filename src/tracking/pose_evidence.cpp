@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/tracking/pose_evidence.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -78,9 +79,7 @@ PoseEvidence poseEvidence(const WorkingFrame& frame, const TrackingResult& align
 }
 
 double positionSigma(const Matrix6d& covariance) {
-  const Eigen::Matrix3d of_shift = covariance.topLeftCorner<3, 3>();
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_shift).eigenvalues()[2]));
+  return std::sqrt(std::max(0.0, eigenOf(covariance.topLeftCorner<3, 3>()).values[2]));
 }
 
 double logOdds(double probability) { return std::log(probability / (1.0 - probability)); }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/tracking/tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "noise_information.hpp"
 #include "place_errors.hpp"
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/tracking/normal_equations.hpp"
 
 namespace pf {
@@ -99,7 +99,7 @@ double weightOf(const Prior& prior, const ImageSystem& images, const Vector6d& e
   if (prior.is_firm) return 1.0;
   const Vector6d v = images.H * error - images.g;  // H times the answer, seen from the prior's
   const double distance2 =
-      v.dot(images.inverse * v) - v.dot((images.H + prior.information).ldlt().solve(v));
+      v.dot(images.inverse * v) - v.dot(solve(images.H + prior.information, v));
   const double root = 1.0 / (1.0 + std::max(0.0, distance2) / kPriorScale2);
   return root * root;
 }
@@ -165,7 +165,7 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
     if (!a.solvable) return;
     const PoseSystem system =
         combine(withoutNoise(a.equations, share, prior), prior, a.T_frame_view);
-    Vector6d step = system.H.ldlt().solve(-system.g);
+    Vector6d step = solve(system.H, -system.g);
     a.solvable = step.allFinite() && step.norm() < 1.0;
     if (!a.solvable) return;
     const double most =
@@ -196,8 +196,8 @@ void alignLevel(const ModelPoints& model, const FrameLevel& frame, double share,
 void addSystematic(const PlaceErrors& places, const ImageSystem& images, const Prior& prior,
                    TrackingResult& result) {
   const double held = result.prior_weight / kSameError_frames;
-  const Matrix6d pull = (images.H + held * prior.information).ldlt().solve(images.kept);
-  result.systematic = pull * places.gradient * pull.transpose();
+  const Matrix6d pull = solve(images.H + held * prior.information, images.kept);
+  result.systematic = propagated(pull, places.gradient);
   result.distance_m = places.distance_m;
 }
 
@@ -221,7 +221,7 @@ TrackingResult resultOf(const Alignment& a, const ImageSystem& images, const Pri
   result.free_directions = system.free_directions;
   result.prior_weight = system.prior_weight;
   result.converged = a.last_step < kConvergedStep;
-  result.covariance = system.H.ldlt().solve(Matrix6d::Identity());
+  result.covariance = inverse(system.H);
   return result;
 }
 
@@ -237,7 +237,7 @@ TrackingResult track(const WorkingFrame& frame, const ModelPyramid& model,
   a.settings.sensor = frame.sensor;
   a.T_frame_view = start.T_map_camera.inverse() * start.T_map_view;
   const Prior prior{start.prior.T_map_camera.inverse() * start.T_map_view,
-                    start.prior.covariance.ldlt().solve(Matrix6d::Identity()), start.prior_is_firm,
+                    inverse(start.prior.covariance), start.prior_is_firm,
                     start.prior.is_measured ? kNormalNoise : kBlindNormalNoise, frame.sensor};
   const PinholeCamera& finest = frame.levels[0].camera;
   const double pixels_per_measurement = kMeasurement_sr * finest.fx * finest.fy;

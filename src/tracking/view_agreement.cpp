@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion/tracking/view_agreement.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 namespace {
@@ -111,8 +112,7 @@ ViewAgreement compareViews(const WorkingFrame& frame, const ModelView& view) {
   result.seen_through = counts.through / std::max(1.0, counts.known);
   result.hidden = counts.hidden / std::max(1.0, counts.known);
   result.correlation = correlationOf(windows);
-  result.spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals / std::max(1.0, agreeing))
-                      .eigenvalues()[0];
+  result.spread = eigenOf(normals / std::max(1.0, agreeing)).values[0];
   return result;
 }
 

@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "../../src/ros/stamp_pairer.hpp"
+#include "../../src/bags/stamp_pairer.hpp"
 
 namespace posefusion_ros {
 namespace {
