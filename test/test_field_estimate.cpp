@@ -21,6 +21,11 @@ std::vector<CalibrationView> distortedViews() {
   return test::roomViews(kViewsOfRoom, like);
 }
 
+std::vector<double> doubled(std::vector<double> values) {
+  for (double& value : values) value *= 2;
+  return values;
+}
+
 const FieldEstimate& distortedEstimate() {
   static const FieldEstimate estimate = estimateField(distortedViews());
   return estimate;
@@ -59,6 +64,25 @@ TEST(FieldEstimate, aGoodCameraIsLeftAlone) {
   }
 }
 
+TEST(FieldEstimate, aFewViewsAreEnoughForACameraThatIsFarOff) {
+  test::RoomView like;
+  like.field = test::roomField();
+  like.field = DepthField(like.field.columns(), like.field.rows(), doubled(like.field.nodes()));
+  const FieldEstimate estimate = estimateField(test::roomViews(23, like));
+  EXPECT_LT(estimate.kept_out.pairs, 9U);
+  EXPECT_TRUE(estimate.worth_taking) << estimate.reason;
+  EXPECT_GE(compare(estimate.field, like.field).correlation, 0.8);
+}
+
+TEST(FieldEstimate, aFewViewsOfAGoodCameraProveNothing) {
+  for (int count = 2; count <= 12; ++count) {
+    test::RoomView like;
+    like.pose_error_m = 0.005;
+    const FieldEstimate estimate = estimateField(test::roomViews(count, like));
+    EXPECT_FALSE(estimate.worth_taking) << count << ", " << estimate.kept_out.significance;
+  }
+}
+
 TEST(FieldEstimate, repeatedItFindsNothingMore) {
   auto views = distortedViews();
   FieldEstimateConfig config;
@@ -89,6 +113,21 @@ TEST(FieldEstimate, aStepIsTakenFromMorePairsThatAgreeNoWorse) {
   EXPECT_NE(step.doubtOfStep(100), "");
   step.kept_out.significance = 4.0;
   EXPECT_EQ(step.doubtOfStep(1000), "");
+}
+
+TEST(FieldEstimate, aCameraIsClearedByWhatWouldHaveFoundItOff) {
+  const DepthSensor sensor;
+  FieldEstimate nothing;
+  EXPECT_FALSE(nothing.clears(sensor)) << "no pair has judged";
+  nothing.kept_out.pairs = 4;
+  nothing.kept_out.significance = 1.0;
+  nothing.sigma_per_m = 0.1 * sensor.systematic_1_m;
+  EXPECT_TRUE(nothing.clears(sensor));
+  nothing.kept_out.significance = 2.0;
+  EXPECT_FALSE(nothing.clears(sensor)) << "it is probably off";
+  nothing.kept_out.significance = 1.0;
+  nothing.sigma_per_m = sensor.systematic_1_m;
+  EXPECT_FALSE(nothing.clears(sensor)) << "as much would not have been found";
 }
 
 TEST(FieldEstimate, depthNearTheEndOfTheRangeIsIgnored) {

@@ -15,7 +15,8 @@ namespace {
 
 // One chance in a thousand that luck alone does as well.
 constexpr double kSignificant = 3.1;
-// One in twenty: pairs that agree worse by no more than that do not speak against a field.
+// One in twenty: pairs that agree worse by no more than that do not speak against a field, and
+// better by no more, not for one.
 constexpr double kLikely = 1.64;
 // An estimate from so many times the pairs is better by itself: its variance falls with them. For
 // less the map is not moved.
@@ -26,8 +27,8 @@ constexpr double kMore = 1.25;
 constexpr double kSigmas = 3.0;
 constexpr char kNoBetter[] =
     "pairs that were kept out do not agree better by more than luck explains";
-// Fewer judging pairs give no standard error worth the name.
-constexpr std::size_t kFewestJudges = 10;
+// One judging pair alone has no standard error.
+constexpr std::size_t kFewestJudges = 2;
 
 void require(const CalibrationView& view) {
   const std::string name = "keyframe " + std::to_string(view.id) + ": ";
@@ -94,6 +95,11 @@ std::string FieldEstimate::doubtOfStep(std::size_t known_from_pairs) const {
 
 std::string FieldEstimate::doubtBeside(const std::optional<DepthCalibration>& known) const {
   return known ? doubtOfStep(known->pairs) : reason;
+}
+
+bool FieldEstimate::clears(const DepthSensor& sensor) const {
+  return kept_out.pairs > 0 && kept_out.significance <= kLikely &&
+         left_per_m() < sensor.systematic_1_m;
 }
 
 DepthCalibration FieldEstimate::asCalibration() const {

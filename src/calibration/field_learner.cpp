@@ -4,7 +4,6 @@
 namespace pf {
 namespace {
 
-constexpr std::size_t kFewest = 10;  // keyframes: fewer never make enough pairs
 // Surfaces of that many keyframes are 20 MB, and their pairs two seconds of work.
 constexpr std::size_t kMostViews = 160;
 
@@ -28,7 +27,7 @@ void FieldLearner::setPoses(const std::vector<MapPose>& poses) {
 }
 
 std::optional<FieldEstimate> FieldLearner::learn(const DepthField& known) {
-  if (keyframes_ < kFewest || 4 * keyframes_ < 5 * estimated_at_) return std::nullopt;
+  if (keyframes_ == 0 || 4 * keyframes_ < 5 * estimated_at_) return std::nullopt;
   return estimate(known);
 }
 

@@ -156,19 +156,31 @@ double lossOf(const std::vector<Judged>& residuals, const PairModel& model,
   return residuals.empty() ? 0 : loss / static_cast<double>(residuals.size());
 }
 
-/// Mean over its standard error, where what happens in a view may be one piece of luck.
+/// How many standard deviations a normal variate has to be off to be as unlikely as Student's t of
+/// so many degrees of freedom (Wallace, "Bounds on normal approximations to Student's and the
+/// chi-square distributions", 1959).
+double asNormal(double t, double freedom) {
+  const double size = std::sqrt(freedom * std::log1p(t * t / freedom));
+  return std::copysign(size * (8 * freedom + 1) / (8 * freedom + 3), t);
+}
+
+/// Mean over its standard error, where what happens in a view may be one piece of luck; of few
+/// views the standard error is not known well, and says less.
 double significanceOf(const std::vector<ViewPair>& pairs, const std::vector<double>& gains) {
   double sum = 0;
   for (const double gain : gains) sum += gain;
   const double mean = sum / static_cast<double>(gains.size());
-  double variance = 0, cluster = 0;
+  double variance = 0, cluster = 0, views = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     cluster += gains[i] - mean;
     if (i + 1 < pairs.size() && pairs[i + 1].from == pairs[i].from) continue;
     variance += cluster * cluster;
     cluster = 0;
+    ++views;
   }
-  return variance > 0 ? sum / std::sqrt(variance) : 0;
+  if (!(variance > 0) || views < 2) return 0;
+  const double freedom = views - 1;
+  return asNormal(sum / std::sqrt(variance * views / freedom), freedom);
 }
 
 }  // namespace

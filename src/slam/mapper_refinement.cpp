@@ -51,7 +51,7 @@ std::string Mapper::State::learnFromAll() {
     return {};
   }
   if (is_off) return "depth is off by a field that it is not corrected by (calibration.mode)";
-  const bool is_known = calibration || estimate.kept_out.pairs > 0;
+  const bool is_known = calibration || estimate.clears(sensor);
   return is_known ? std::string() : "what depth is off by is not known: " + estimate.reason;
 }
 

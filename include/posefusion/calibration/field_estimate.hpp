@@ -10,6 +10,7 @@
 #include "posefusion/calibration/depth_calibration.hpp"
 #include "posefusion/calibration/pair_equations.hpp"
 #include "posefusion/calibration/view_pairs.hpp"
+#include "posefusion/core/depth_sensor.hpp"
 
 namespace pf {
 
@@ -34,7 +35,8 @@ struct KeptOut {
   std::size_t pairs = 0;
   double before_mm = 0, after_mm = 0;      ///< median distance of a patch to the other's plane
   double before_loss = 0, after_loss = 0;  ///< mean robust loss, 0..1
-  /// Mean gain in loss over its standard error; the pairs of one view count as one.
+  /// Mean gain in loss over its standard error; the pairs of one view count as one. Of few views as
+  /// the deviation of a normal variate that is as unlikely.
   double significance = 0;
 };
 
@@ -56,6 +58,10 @@ struct FieldEstimate {
 
   /// Why it is not worth taking by a camera of which that is known (nothing: `reason`).
   std::string doubtBeside(const std::optional<DepthCalibration>& known) const;
+
+  /// Whether it speaks for the camera, of which nothing is known: it found nothing, not even what
+  /// one would bet on, and would have found what such a sensor is usually off by.
+  bool clears(const DepthSensor& sensor) const;
 
   /// As one step of what is known of a camera, without its name and image.
   DepthCalibration asCalibration() const;
