@@ -43,7 +43,10 @@ def name(path):
 
 
 def folder_of(parts):
-    """The folder of a source, or of an include: posefusion/map/render.hpp is in map."""
+    """The folder of a source, or of an include: posefusion/map/render.hpp is in map, posefusion_ros/bags/messages.hpp
+    in bags."""
+    if parts[0] == "posefusion_ros" and len(parts) > 2:
+        return parts[1]
     library = {"posefusion_ros": "ros", "posefusion_openni2": "openni2"}
     return library.get(parts[0]) or (parts[1] if parts[0] == "posefusion" else parts[0])
 

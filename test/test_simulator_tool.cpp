@@ -18,8 +18,8 @@
 #include "posefusion/io/files.hpp"
 #include "posefusion/io/frame_source.hpp"
 #include "posefusion/io/trajectory_file.hpp"
-#include "posefusion_ros/bag_source.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 #include "program.hpp"
 #include "simulator_scene.hpp"
 

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <utility>
 
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 #include "posefusion_ros/notice.hpp"
 #include "posefusion_ros/parameters.hpp"
 #include "posefusion_ros/queue_keeper.hpp"

@@ -4,8 +4,8 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include "posefusion_ros/bags/messages.hpp"
 #include "posefusion_ros/input_pairing.hpp"
-#include "posefusion_ros/messages.hpp"
 
 namespace posefusion_ros {
 

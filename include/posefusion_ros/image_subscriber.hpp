@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "posefusion_ros/input_image.hpp"
+#include "posefusion_ros/bags/input_image.hpp"
 
 namespace posefusion_ros {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "posefusion_ros/input_image.hpp"
+#include "posefusion_ros/bags/input_image.hpp"
 
 namespace posefusion_ros {
 

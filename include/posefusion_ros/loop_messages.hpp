@@ -10,7 +10,7 @@
 #include <string>
 
 #include "posefusion/loop/worker.hpp"
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

@@ -4,7 +4,7 @@
 #include <std_msgs/Header.h>
 
 #include "posefusion/frame/model_view.hpp"
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "posefusion/segmentation/moving_object.hpp"
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

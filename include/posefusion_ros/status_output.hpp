@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

@@ -4,8 +4,8 @@
 #include <rosbag/bag.h>
 #include <sensor_msgs/CameraInfo.h>
 
-#include "posefusion_ros/bag_source.hpp"
-#include "posefusion_ros/input_image.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
+#include "posefusion_ros/bags/input_image.hpp"
 
 namespace posefusion_ros {
 

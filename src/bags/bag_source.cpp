@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 
 #include <geometry_msgs/PoseStamped.h>
 #include <rosbag/view.h>
@@ -14,8 +14,8 @@
 #include "bag_topics.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
-#include "posefusion_ros/conversions.hpp"
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "stamp_pairer.hpp"
 
 namespace posefusion_ros {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 
 namespace posefusion_ros {
 

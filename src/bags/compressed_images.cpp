@@ -5,7 +5,7 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/images.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/input_image.hpp"
+#include "posefusion_ros/bags/input_image.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/one_size.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/pose/person_mask.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 

@@ -3,10 +3,10 @@
 
 #include <utility>
 
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
-#include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 

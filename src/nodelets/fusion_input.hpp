@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "posefusion/slam/mapper.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
-#include "posefusion_ros/messages.hpp"
 
 namespace posefusion_ros {
 

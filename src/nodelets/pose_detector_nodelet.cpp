@@ -6,14 +6,14 @@
 
 #include "posefusion/io/people_json.hpp"
 #include "posefusion/pose/detector.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
-#include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/running_settings.hpp"
 #include "posefusion_ros/settings_server.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/worker.hpp"
 
 namespace posefusion_ros {

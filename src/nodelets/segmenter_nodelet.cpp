@@ -8,8 +8,9 @@
 #include "posefusion/run/people_picture.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
 #include "posefusion_ros/background.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
-#include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/exact_matcher.hpp"
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/moving_object_messages.hpp"
@@ -17,7 +18,6 @@
 #include "posefusion_ros/running_settings.hpp"
 #include "posefusion_ros/settings_server.hpp"
 #include "posefusion_ros/skeleton_markers.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 #include "posefusion_ros/transforms.hpp"
 #include "posefusion_ros/worker.hpp"
 

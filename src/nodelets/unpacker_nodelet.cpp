@@ -6,10 +6,10 @@
 #include <string>
 
 #include "posefusion/core/error.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 #include "posefusion_ros/chain_nodelet.hpp"
 #include "posefusion_ros/clock_watch.hpp"
 #include "posefusion_ros/compressed_frame.hpp"
-#include "posefusion_ros/conversions.hpp"
 #include "posefusion_ros/link_renewal.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/stamp_guard.hpp"

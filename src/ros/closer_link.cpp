@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 #include "posefusion_ros/names.hpp"
 
 namespace posefusion_ros {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

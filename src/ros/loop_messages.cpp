@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "posefusion_ros/conversions.hpp"
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 
 namespace posefusion_ros {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "posefusion_ros/map_output.hpp"
 
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 #include "posefusion_ros/model_view.hpp"
 #include "posefusion_ros/names.hpp"
 #include "posefusion_ros/surfel_cloud.hpp"

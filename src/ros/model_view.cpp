@@ -6,7 +6,7 @@
 #include <boost/make_shared.hpp>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -9,9 +9,9 @@
 #include <algorithm>
 
 #include "posefusion/core/se3.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "posefusion/core/error.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "posefusion_ros/messages.hpp"
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 
 namespace posefusion_ros {
 namespace {

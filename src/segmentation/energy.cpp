@@ -56,10 +56,7 @@ Background backgroundOf(const Evidence& evidence, const std::vector<TrackedPerso
   const int candidate = candidateOf(evidence, cell);
   if (candidate < 0) return background;
   const bool in_map = background == Background::agrees && people[candidate].in_map;
-  // Next to a joint that was seen just now, the skeleton knows better than a young surface.
-  const bool too_young = background == Background::recent && people[candidate].fresh &&
-                         evidence.distance.relative[cell] < kInside;
-  if (in_map || too_young || isMappedPerson(evidence, people, cell)) return Background::unknown;
+  if (in_map || isMappedPerson(evidence, people, cell)) return Background::unknown;
   return background;
 }
 

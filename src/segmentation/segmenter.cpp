@@ -6,7 +6,6 @@
 #include "posefusion/core/map_pose.hpp"
 #include "posefusion/segmentation/location.hpp"
 #include "posefusion/segmentation/shown_people.hpp"
-#include "posefusion/segmentation/trunks.hpp"
 #include "segmenter_state.hpp"
 
 namespace pf {
@@ -42,7 +41,6 @@ bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowImages& flow,
   s.planes.find(s.evidence.grid, s.evidence.flatness);
   s.locate(config_.carry_s);
   if (s.people.empty()) return false;
-  doubtTrunks(s.people, s.evidence.grid, s.evidence.flatness, s.evidence.background);
   s.cut(config_);
   return true;
 }

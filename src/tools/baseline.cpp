@@ -17,7 +17,7 @@
 #include "posefusion/core/stopwatch.hpp"
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/trajectory_file.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 #include "tool.hpp"
 
 namespace pf {

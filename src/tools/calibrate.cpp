@@ -14,7 +14,7 @@
 #include "posefusion/loop/dense_pairs.hpp"
 #include "posefusion/run/field_picture.hpp"
 #include "posefusion/run/run.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 #include "progress.hpp"
 #include "tool.hpp"
 

@@ -13,7 +13,7 @@
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/mask_folders.hpp"
 #include "posefusion/run/sequence_facts.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 #include "true_surface.hpp"
 
 namespace pf {

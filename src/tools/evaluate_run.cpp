@@ -12,7 +12,7 @@
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/mask_folders.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 
 namespace fs = std::filesystem;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "posefusion/slam/config.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 
 namespace posefusion_ros {
 

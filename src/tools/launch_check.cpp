@@ -21,7 +21,7 @@
 #include "posefusion/pose/detector.hpp"
 #include "posefusion/pose/model_settings.hpp"
 #include "posefusion/slam/config.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 #include "posefusion_ros/input_settings.hpp"
 #include "posefusion_ros/node_control.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace pf {
 

@@ -8,9 +8,9 @@
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/map_file.hpp"
 #include "posefusion/io/trajectory_file.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "posefusion/run/run_report.hpp"
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 

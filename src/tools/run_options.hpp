@@ -6,7 +6,7 @@
 #include <string>
 
 #include "posefusion/slam/config.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 
 namespace pf {
 

@@ -7,9 +7,9 @@
 
 #include "new_bag.hpp"
 #include "posefusion/core/stamps.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 #include "simulate_bag_senses.hpp"
 #include "simulator/truth.hpp"
 

@@ -9,9 +9,9 @@
 
 #include "posefusion/core/error.hpp"
 #include "posefusion/io/frame_source.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 #include "tool.hpp"
 
 namespace posefusion_ros {

@@ -15,7 +15,7 @@
 #include "posefusion/evaluation/metrics.hpp"
 #include "posefusion/io/trajectory_file.hpp"
 #include "posefusion/run/run.hpp"
-#include "posefusion_ros/bag_source.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
 #include "progress.hpp"
 #include "tool.hpp"
 

@@ -11,9 +11,9 @@
 
 #include "../temporary_folder.hpp"
 #include "message_parts.hpp"
-#include "posefusion_ros/bag_source.hpp"
-#include "posefusion_ros/conversions.hpp"
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/bag_source.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 
 namespace posefusion_ros {
 

@@ -18,9 +18,9 @@
 
 #include "../simulated_sequence.hpp"
 #include "posefusion/io/files.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 #include "posefusion_ros/names.hpp"
-#include "posefusion_ros/stage_messages.hpp"
 
 namespace posefusion_ros {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../temporary_folder.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 

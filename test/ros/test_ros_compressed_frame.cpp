@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "../temporary_folder.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 
 namespace posefusion_ros {
 namespace {

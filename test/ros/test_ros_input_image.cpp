@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/input_image.hpp"
+#include "posefusion_ros/bags/input_image.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "posefusion_ros/stage_messages.hpp"
+#include "posefusion_ros/bags/stage_messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "../temporary_folder.hpp"
 #include "message_parts.hpp"
-#include "posefusion_ros/conversions.hpp"
+#include "posefusion_ros/bags/conversions.hpp"
 #include "posefusion_ros/model_view.hpp"
 
 namespace posefusion_ros {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 namespace {

@@ -11,7 +11,7 @@
 #include "posefusion/frame/flow.hpp"
 #include "posefusion/pose/skeleton.hpp"
 #include "posefusion/slam/mapper.hpp"
-#include "posefusion_ros/messages.hpp"
+#include "posefusion_ros/bags/messages.hpp"
 
 namespace posefusion_ros {
 
