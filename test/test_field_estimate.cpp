@@ -21,11 +21,6 @@ std::vector<CalibrationView> distortedViews() {
   return test::roomViews(kViewsOfRoom, like);
 }
 
-std::vector<double> doubled(std::vector<double> values) {
-  for (double& value : values) value *= 2;
-  return values;
-}
-
 const FieldEstimate& distortedEstimate() {
   static const FieldEstimate estimate = estimateField(distortedViews());
   return estimate;
@@ -66,8 +61,7 @@ TEST(FieldEstimate, aGoodCameraIsLeftAlone) {
 
 TEST(FieldEstimate, aFewViewsAreEnoughForACameraThatIsFarOff) {
   test::RoomView like;
-  like.field = test::roomField();
-  like.field = DepthField(like.field.columns(), like.field.rows(), doubled(like.field.nodes()));
+  like.field = test::roomField().then(test::roomField());
   const FieldEstimate estimate = estimateField(test::roomViews(23, like));
   EXPECT_LT(estimate.kept_out.pairs, 9U);
   EXPECT_TRUE(estimate.worth_taking) << estimate.reason;

@@ -53,5 +53,20 @@ TEST(MappedPeople, NothingOfTheMapIsAPersonsWithoutASureDetection) {
   EXPECT_TRUE(SegmenterChain().segment(scene.frame, scene.people, &scene.room).in_map_mask.empty());
 }
 
+/// A person that stands still was mapped unmasked, all but the limbs: the hole in the mask would
+/// stay, and the camera follow the chest when it walks off.
+TEST(MappedPeople, AHoleInAMaskCloses) {
+  SegmenterChain segmenter;
+  for (int i = 0; i < 4; ++i) {
+    Scene scene;
+    const cv::Rect chest(276, 205, 88, 80);
+    scene.frame.depth(chest).copyTo(scene.room.depth_m(chest));
+    scene.frame.stamp_ns = scene.people.stamp_ns = 1 + i * 33333333LL;
+    const Segmentation result = segmenter.segment(scene.frame, scene.people, &scene.room);
+    ASSERT_FALSE(result.mask.empty());
+    EXPECT_GT(iou(result.mask, scene.truth), 0.9) << i;
+  }
+}
+
 }  // namespace
 }  // namespace pf

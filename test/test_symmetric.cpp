@@ -14,7 +14,7 @@ Matrix6d randomCovariance(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   Matrix6d A;
-  for (double& a : A.reshaped()) a = normal(random);
+  for (int i = 0; i < A.size(); ++i) A(i) = normal(random);
   Vector6d scale;
   scale << 1, 1, 1, 1e-2, 1e-2, 1e-2;
   return scale.asDiagonal() * Matrix6d(A * A.transpose() + Matrix6d::Identity()) *

@@ -5,12 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "posefusion/core/symmetric.hpp"
-
 namespace pf {
 namespace {
-
-using PoseFieldBlock = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 // Cells of a grid of 12 x 9 splines: the outermost do not reach into the image.
 constexpr double kCells = 9 * 6;
@@ -47,7 +43,7 @@ Judged judged(const PairResidual& r) {
 struct PairSums {
   Matrix6d P;
   Vector6d p;
-  PoseFieldBlock C;
+  SixRows C;
   // Of the field: with its mirror image, and the products of each node with itself.
   Eigen::MatrixXd half;
   Eigen::VectorXd squares;
@@ -55,7 +51,7 @@ struct PairSums {
   explicit PairSums(Eigen::Index nodes)
       : P(Matrix6d::Zero()),
         p(Vector6d::Zero()),
-        C(PoseFieldBlock::Zero(6, nodes)),
+        C(SixRows::Zero(6, nodes)),
         half(Eigen::MatrixXd::Zero(nodes, nodes)),
         squares(Eigen::VectorXd::Zero(nodes)) {}
 };

@@ -8,6 +8,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "posefusion/core/symmetric.hpp"
+
 namespace posefusion_ros {
 namespace {
 
@@ -28,7 +30,7 @@ pf::Matrix6d poseCovariance(const Eigen::Isometry3d& T_parent_body,
   J.topRightCorner<3, 3>() =
       T_parent_body.linear() * pf::hat(T_body_camera.translation()) * T_body_camera.linear();
   J.bottomRightCorner<3, 3>() = R;
-  return J * camera * J.transpose();
+  return pf::propagated(J, camera);
 }
 
 LookupSettings readLookup(Parameters& parameters, bool lossless) {

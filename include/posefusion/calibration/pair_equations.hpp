@@ -6,6 +6,7 @@
 
 #include "posefusion/calibration/pair_residual.hpp"
 #include "posefusion/calibration/view_pairs.hpp"
+#include "posefusion/core/symmetric.hpp"
 
 namespace pf {
 
@@ -55,12 +56,12 @@ struct PairStep {
   /// How its pose follows from steps of the field and of its views:
   /// x = own + by_field * step + by_views * v.
   Vector6d own = Vector6d::Zero();
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_field;
+  SixRows by_field;
   Matrix6d by_views = Matrix6d::Zero();
   Eigen::VectorXd g;                    ///< its part of FieldEquations::g
   Matrix6d H_views = Matrix6d::Zero();  ///< normal equations of v
   Vector6d g_views = Vector6d::Zero();
-  Eigen::Matrix<double, 6, Eigen::Dynamic> H_views_field;
+  SixRows H_views_field;
 };
 
 /// Adds a pair to the equations of the field; `c` is how far its pose is from where its views are.

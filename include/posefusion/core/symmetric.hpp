@@ -10,8 +10,10 @@ namespace pf {
 // Symmetric matrices of the size of a motion or of a point. Eigen's factorisations take seconds to
 // compile: they are compiled here once.
 
-/// A^-1 * b and A^-1 * B of a positive semidefinite matrix. @{
+/// Any number of columns of the size of a motion.
 using SixRows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A^-1 * b and A^-1 * B of a positive semidefinite matrix. @{
 Vector6d solve(const Matrix6d& A, const Vector6d& b);
 Matrix6d solve(const Matrix6d& A, const Matrix6d& B);
 SixRows solve(const Matrix6d& A, const SixRows& B);
