@@ -4,17 +4,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "posefusion/core/rigid_motion.hpp"
-#include "posefusion/core/se3.hpp"
+#include "posefusion/core/same_pose.hpp"
 #include "posefusion/loop/own_view.hpp"
 
 namespace pf {
-namespace {
-
-// The two directions of a pair must agree within this.
-constexpr double kOneWay_m = 0.03, kOneWay_rad = 0.03;
-
-}  // namespace
-
 KeyframeView keyframeView(const WorkingFrame& frame, std::int64_t id, const MapPose& pose,
                           bool nobody_in_view) {
   KeyframeView view;
@@ -95,8 +88,7 @@ PlaceVerdict PairAligner::align(const KeyframePicture& from, const KeyframePictu
 bool PairAligner::confirms(const KeyframePicture& from, const KeyframePicture& to,
                            const Eigen::Isometry3d& T_from_to) {
   const PlaceVerdict back = align(to, from, T_from_to.inverse());
-  return back.accepted() &&
-         isWithin(T_from_to * back.alignment.T_map_camera, kOneWay_m, kOneWay_rad);
+  return back.accepted() && isWithin(T_from_to * back.alignment.T_map_camera, kSamePose);
 }
 
 }  // namespace pf

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "posefusion/core/se3.hpp"
+#include "posefusion/core/same_pose.hpp"
 #include "posefusion/loop/dense_pairs.hpp"
 #include "posefusion/loop/worker.hpp"
 
@@ -14,8 +14,6 @@ namespace {
 
 // Of a place, with the known views nearest to it: one may be of people, or blurred.
 constexpr std::size_t kNearest = 2;
-// Guesses that differ by less lead to the same.
-constexpr double kSame_m = 0.1, kSame_rad = 0.1;
 // Views that are looked for by drawing: seconds each, of a large map.
 constexpr std::size_t kDrawnFor = 8;
 // Views with less of them in the merged map say nothing of it; more than this seen through, and
@@ -39,8 +37,9 @@ bool areOfSamePair(const PoseConstraint& a, const PoseConstraint& b) {
   return a.from == b.from && a.to == b.to;
 }
 
+/// Guesses so near lead to the same alignment.
 bool areAlike(const PoseConstraint& a, const PoseConstraint& b) {
-  return areOfSamePair(a, b) && isWithin(a.T_from_to.inverse() * b.T_from_to, kSame_m, kSame_rad);
+  return areOfSamePair(a, b) && isWithin(a.T_from_to.inverse() * b.T_from_to, kSamePlace);
 }
 
 }  // namespace

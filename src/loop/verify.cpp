@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "posefusion/core/same_pose.hpp"
+
 namespace pf {
 namespace {
 
@@ -12,7 +14,6 @@ namespace {
 // map shows other things than from the right one.
 constexpr int kRounds = 3;
 constexpr double kSettled_m = 0.01, kSettled_rad = 0.01;
-constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.06;
 // Of two places that look alike one is believed by odds of 150 to 1: so much more chi-square.
 constexpr double kTellsApart = 10.0;
 // Nothing is known before: a prior as wide as the gates.
@@ -20,7 +21,7 @@ constexpr double kPriorShift_m = 0.3, kPriorTurn_rad = 0.3;
 
 bool isSamePlace(const PlaceVerdict& a, const PlaceVerdict& b) {
   const Eigen::Isometry3d step = a.alignment.T_map_camera.inverse() * b.alignment.T_map_camera;
-  return a.fragment == b.fragment && isWithin(step, kSamePlace_m, kSamePlace_rad);
+  return a.fragment == b.fragment && isWithin(step, kSamePlace);
 }
 
 /// Of places that all look right (at least one) that where dead reckoning expects the camera, if by

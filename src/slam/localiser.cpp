@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "posefusion/calibration/depth_correction.hpp"
+#include "posefusion/core/same_pose.hpp"
 
 namespace pf {
 namespace {
@@ -16,9 +17,6 @@ constexpr double kMaxReckoning_s = 0.6;
 constexpr int kManyCorners = 80;
 constexpr double kMostCorners = 0.8;  // part of them that agree
 constexpr double kMaxReckoned_m_s = 1.2, kMaxReckoned_rad_s = 1.8;
-// The pose of a blurred frame is not reported where alignment needs its corners, or they contradict
-// it by more than this: in a turn they do not, in a fall they do.
-constexpr double kMaxForced_m = 0.04, kMaxForced_rad = 0.03;
 constexpr double kProbation_s = 2.0;
 
 }  // namespace
@@ -164,9 +162,11 @@ void Localiser::distrust(Location& location, const PosePrior& prior, std::int64_
   location.located =
       untrusted_in_a_row_ == reckoned_in_a_row_ + 1 && isReckonedWell(location, prior, reckoned_s);
   if (location.outcome == FrameOutcome::forced) {
+    // Not reported where alignment needs the blurred frame's corners, or they contradict it: in a
+    // turn they do not, in a fall they do.
     const Eigen::Isometry3d off = prior.T_map_camera.inverse() * location.tracking.T_map_camera;
-    location.located = location.tracking.free_directions == 0 &&
-                       (!prior.is_measured || isWithin(off, kMaxForced_m, kMaxForced_rad));
+    location.located =
+        location.tracking.free_directions == 0 && (!prior.is_measured || isWithin(off, kSamePose));
     if (location.located) seen_ns_ = stamp_ns;
   } else {
     location.tracking.T_map_camera = prior.T_map_camera;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "posefusion/core/same_pose.hpp"
 #include "posefusion/slam/localiser.hpp"
 #include "posefusion/tracking/pose_evidence.hpp"
 
@@ -19,9 +20,6 @@ constexpr double kSameView_s = 0.5;
 constexpr double kMostSure = 0.9999;
 // A place that a search has found is confirmed by frames of so long.
 constexpr double kConfirmed_s = 0.1;
-constexpr double kSuggested_m = 0.05, kSuggested_rad = 0.05;
-// Two frames are of one place when the way between them is what was expected, to this.
-constexpr double kSameWay_m = 0.03, kSameWay_rad = 0.03;
 
 // After a gap so long, or so far from where it was seen last, the camera may be where a fall threw
 // it, and one frame is little to go by.
@@ -100,8 +98,8 @@ void Localiser::gatherEvidence(const WorkingFrame& frame, const PosePrior& prior
     belief_ = 0;
     return;
   }
-  const bool follows = isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera,
-                                kSameWay_m, kSameWay_rad);
+  const bool follows =
+      isWithin(prior.T_map_camera.inverse() * location.tracking.T_map_camera, kSamePose);
   // A place just found is better known than where the camera went from it.
   if (!std::exchange(is_suggested_, false) && !follows) belief_ = 0;
   const TrackingResult& tracking = location.tracking;
@@ -142,16 +140,15 @@ void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_re
   if (state_ != TrackingState::lost || belief_ >= place.log_odds) return;
   const Eigen::Isometry3d T_map_now =
       place.alignment.T_map_camera * T_reckoned.inverse() * T_reckoned_;
-  const bool is_known_already =
-      previous_.fragment == place.fragment &&
-      isWithin(previous_.T_map_camera.inverse() * T_map_now, kSuggested_m, kSuggested_rad);
+  const bool is_known_already = previous_.fragment == place.fragment &&
+                                isWithin(previous_.T_map_camera.inverse() * T_map_now, kSamePose);
   const double confirmed =
       logOdds(config_.sure_to_return) - shareOfNews(kConfirmed_s) * logOdds(kMostSure);
   if (is_known_already && belief_ >= confirmed) return;  // later frames have said so too
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
   previous_.fragment = place.fragment;
   previous_.T_map_camera = T_map_now;
-  previous_.covariance = independentCovariance(kSuggested_m, kSuggested_rad);
+  previous_.covariance = covarianceOf(kSamePose);
   previous_.velocity.setZero();
   belief_ = confirmed;
   is_suggested_ = true;

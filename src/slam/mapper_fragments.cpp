@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "mapper_state.hpp"
-#include "posefusion/core/se3.hpp"
+#include "posefusion/core/same_pose.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/core/symmetric.hpp"
 
@@ -15,8 +15,6 @@ constexpr double kMostElapsed_s = 0.5;
 // not be unknown, and a fragment would be made of scraps.
 constexpr double kOpenView = 0.25;
 constexpr double kToPlace_s = 0.5;  // between two questions where the fragment lies
-// Two answers in a row that place the fragment alike are believed.
-constexpr double kSamePlace_m = 0.05, kSamePlace_rad = 0.03;
 
 }  // namespace
 
@@ -118,10 +116,11 @@ void Mapper::State::placeFragment(const PlaceVerdict& seen) {
   place.constraint.T_from_to =
       keyframes[static_cast<std::size_t>(near)].T_map_camera.inverse() * T_other_keyframe;
   place.constraint.covariance = propagated(A, seen.alignment.covariance);
+  // Two answers in a row that place the fragment alike are believed.
   const bool again =
       seen_at && seen_at->other == place.other &&
       isWithin(T_other_keyframe.inverse() * seen_at->T_other_fragment * keyframe.T_map_camera,
-               kSamePlace_m, kSamePlace_rad);
+               kSamePose);
   seen_at = place;
   frames_to_place = 0;  // the second answer soon
   if (again) wanted.loops.push_back(place.constraint.asPoseConstraint());
