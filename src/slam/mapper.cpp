@@ -81,16 +81,14 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
     options.input_depth_m = input_depth_m;
   }
   fuser.fuse(frame, location.T_map_camera, map, options);
-  showFrom(location.pose(), true);
-  seen.stamp_ns = view.stamp_ns = last_stamp_ns;
+  showFrom(location.pose(), last_stamp_ns, true);
 }
 
 /// Follows a located frame that is not to be fused. `fill`: it fills in for the map where there is
 /// none.
 void Mapper::State::follow(const Location& location, bool fill) {
   endSearch();
-  showFrom(location.pose(), fill);
-  seen.stamp_ns = view.stamp_ns = last_stamp_ns;
+  showFrom(location.pose(), last_stamp_ns, fill);
 }
 
 Mapper::Mapper(const Config& config) : state_(std::make_unique<State>(config)) {}
@@ -98,6 +96,7 @@ Mapper::~Mapper() = default;
 
 FrameStatus Mapper::process(const StaticFrame& measured) {
   State& s = *state_;
+  s.drawView();
   if (defectOf(measured.frame).empty()) {
     s.sees_other_camera = !s.view.empty() && !isSameCamera(s.camera, measured.frame.camera);
   }
@@ -199,6 +198,7 @@ void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   s.map.clear();
   s.T_world_map.reset();
   s.view = s.seen = ModelView();
+  s.wanted_view.reset();
   s.T_map_uncorrected = Eigen::Isometry3d::Identity();
   s.constraints_are_old = s.calibration_is_asked = false;
   s.last_calibration.clear();

@@ -96,7 +96,8 @@ void Mapper::State::noteImproved(DepthImprovement& depth) {
 /// All that depth has made was taken to what it would be had it been corrected by more.
 void Mapper::State::depthHasChanged(DepthCorrector& step) {
   localiser.correctDepth(step);
-  showFrom({view.fragment, view.T_map_camera}, false);
+  if (!wanted_view) showFrom({view.fragment, view.T_map_camera}, view.stamp_ns, false);
+  wanted_view->fill = false;  // the frame was of depth as it was before
   map_at_loss.reset();
   place_is_stale = true;
 }

@@ -150,7 +150,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
   if (isPlaceKnown()) reckoning.correct(T_new_old);
   localiser.move(T_new_old, where);
   T_map_uncorrected = orthonormalised(T_new_old * T_map_uncorrected);
-  moveView({where, T_new_old * view.T_map_camera});
+  moveView(where, T_new_old);
   keyframes_moved = true;
   map_at_loss.reset();
   seen_at.reset();
@@ -158,11 +158,16 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
 }
 
 /// What the last frame was fused into looks as before from where the camera is now said to be.
-void Mapper::State::moveView(const MapPose& pose) {
-  if (view.stamp_ns != last_stamp_ns) return showFrom(pose, false);
+void Mapper::State::moveView(int fragment, const Eigen::Isometry3d& T_new_old) {
+  if (wanted_view) {
+    wanted_view->pose = {fragment, T_new_old * wanted_view->pose.T_map_camera};
+    return;
+  }
+  const MapPose pose{fragment, T_new_old * view.T_map_camera};
+  if (view.stamp_ns != last_stamp_ns) return showFrom(pose, view.stamp_ns, false);
   view.T_map_camera = seen.T_map_camera = pose.T_map_camera;
   view.T_map_uncorrected = seen.T_map_uncorrected = T_map_uncorrected;
-  view.fragment = seen.fragment = pose.fragment;
+  view.fragment = seen.fragment = fragment;
 }
 
 std::optional<MapCorrection> Mapper::takeCorrection() { return state_->beginCorrection(false); }

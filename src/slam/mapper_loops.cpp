@@ -200,7 +200,7 @@ void Mapper::State::seek(const MapPose& last, Brightness brightness) {
   map_at_loss.reset();
   place_is_stale = true;  // by what was asked before
   localiser.beginLost(last, brightness);
-  showFrom(last, false);
+  showFrom(last, view.stamp_ns, false);
 }
 
 }  // namespace pf

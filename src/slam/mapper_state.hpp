@@ -29,6 +29,13 @@ struct FragmentPlace {
   Eigen::Isometry3d T_other_fragment;
 };
 
+/// A view of the map that is still to be drawn.
+struct WantedView {
+  MapPose pose;
+  std::int64_t stamp_ns = 0;  ///< see ModelView
+  bool fill = false;          ///< the last frame was fused there
+};
+
 /// What is wanted of the map, and not yet in work.
 struct WantedCorrection {
   std::vector<PoseConstraint> loops, remeasured;
@@ -61,8 +68,9 @@ struct Mapper::State {
   bool sees_other_camera = false;  ///< the last frame was of another one
   PaceMeter pace_meter;
   WorkingFrame frame;
-  cv::Mat input_depth_m;      ///< of the frame, before people were taken out
-  ModelView view, elsewhere;  ///< from the last trusted pose, from another guess
+  cv::Mat input_depth_m;                  ///< of the frame, before people were taken out
+  std::optional<WantedView> wanted_view;  ///< until drawn: what is corrected meanwhile is seen too
+  ModelView view, elsewhere;              ///< from the last trusted pose, from another guess
   ModelPyramid model, model_elsewhere;
   const ModelView nothing;
   Fuser fuser;
@@ -127,7 +135,8 @@ struct Mapper::State {
   void mayBeDouble(const std::vector<std::uint32_t>& blocks);
   void follow(const Location& location, bool fill);
   void seek(const MapPose& last, Brightness brightness);
-  void showFrom(const MapPose& pose, bool fill);
+  void showFrom(const MapPose& pose, std::int64_t stamp_ns, bool fill);
+  void drawView();
   void keep(const StaticFrame& input, const Location& location);
   void tellCloser();
   void endSearch();
@@ -153,7 +162,7 @@ struct Mapper::State {
   void retrack(const PoseConstraint& step, int version);
   void follow(const std::vector<Deformation>& deformations,
               const std::vector<std::uint32_t>& blocks, bool lays_layers);
-  void moveView(const MapPose& pose);
+  void moveView(int fragment, const Eigen::Isometry3d& T_new_old);
   StaticFrame corrected(const StaticFrame& input);
   void use(std::optional<DepthCalibration> known);
   void use(std::optional<DepthCalibration> known, DepthCorrector there, DepthCorrector back);

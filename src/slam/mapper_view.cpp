@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the mapper shows its map: to tracking, to the segmenter, and on request.
 #include <algorithm>
+#include <utility>
 
 #include "mapper_state.hpp"
 #include "posefusion/segmentation/segmenter.hpp"
@@ -43,10 +44,17 @@ const ModelView& Mapper::State::viewFrom(const MapPose& pose) {
   return elsewhere;
 }
 
-/// Renders the view that tracking and the segmenter go by. `fill`: the frame was fused there.
-void Mapper::State::showFrom(const MapPose& pose, bool fill) {
+/// Says what the view that tracking and the segmenter go by is to show.
+void Mapper::State::showFrom(const MapPose& pose, std::int64_t stamp_ns, bool fill) {
+  wanted_view = WantedView{pose, stamp_ns, fill};
+}
+
+void Mapper::State::drawView() {
+  if (!wanted_view) return;
+  const auto [pose, stamp_ns, fill] = *std::exchange(wanted_view, std::nullopt);
   renderer.render(map, frame.camera, pose.T_map_camera, viewOptions(sensor, pose.fragment), view);
   model.assign(view, sensor, fill ? &frame.levels[0] : nullptr);
+  view.stamp_ns = stamp_ns;
   view.T_map_uncorrected = T_map_uncorrected;
   seen = view;
   seen.T_world_map = worldFromMap().value_or(bodyFromOptical());
@@ -54,6 +62,7 @@ void Mapper::State::showFrom(const MapPose& pose, bool fill) {
 }
 
 const ModelView& Mapper::view() const {
+  state_->drawView();
   return state_->state() == TrackingState::lost ? state_->nothing : state_->seen;
 }
 

@@ -152,8 +152,9 @@ class Mapper {
 
   /// The map as the depth camera sees it from the last trusted pose, with the camera's own error,
   /// so that depth as measured compares with it: for the segmenter. Empty before the first frame
-  /// and while the camera is lost. The images are valid until the next call of process() or
-  /// reset(): clone what must live longer.
+  /// and while the camera is lost. Drawn when it is first asked for, or with the next frame. The
+  /// images are valid until the next call of process(), take() or reset(): clone what must live
+  /// longer.
   const ModelView& view() const;
 
   /// The map rendered from any pose with any camera (color included): pictures, checks.
