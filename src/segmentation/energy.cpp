@@ -29,10 +29,11 @@ constexpr float kAgreesWithMap = -2.0F;
 
 // Further terms, in units of the distance term.
 constexpr float kOnPlane = -3.0F;
-constexpr float kNoPerson = -4.0F;   // instead of all others: on a small plane, another thing
-constexpr float kCarried = 0.7F;     // in the carried mask, and not a surface of the map
-constexpr float kHoleFactor = 0.5F;  // missing depth counts less ...
-constexpr float kHoleBias = -1.5F;   // ... and is most often shadow beside a person
+constexpr float kNoPerson = -4.0F;       // instead of all others: on a small plane, another thing
+constexpr float kCarriedInFront = 1.5F;  // in the carried mask and before the map
+constexpr float kCarried = 0.7F;         // in the carried mask, the map unknown
+constexpr float kHoleFactor = 0.5F;      // missing depth counts less ...
+constexpr float kHoleBias = -1.5F;       // ... and is most often shadow beside a person
 
 /// Whether the last skeleton or the detector's mask shows a person in the cell.
 bool isDetected(const Evidence& evidence, int cell) {
@@ -146,17 +147,21 @@ void improvedUnary(const Evidence& evidence, const SegmentationConfig& config,
   const auto termsOf = [&](int cell) {
     const int candidate = candidateOf(evidence, cell);
     const Background background = backgroundOf(evidence, people, cell);
-    if (candidate < 0) return -kCertain;
+    const bool in_front = background == Background::nearer;
+    if (candidate < 0 && !in_front) return -kCertain;
     // Far from the skeleton only what stands before the map can be a person: an unseen leg.
-    const float farthest = evidence.shown_person[cell] >= 0   ? kFarthestShown
-                           : background == Background::nearer ? kFarthestInFront
-                                                              : kDistanceLimit;
+    const float farthest = evidence.shown_person[cell] >= 0 ? kFarthestShown
+                           : in_front                       ? kFarthestInFront
+                                                            : kDistanceLimit;
     float value = 1.0F - std::min(evidence.distance.relative[cell], farthest);
-    value += color_weight * colors[candidate][bins[cell]];
+    if (candidate >= 0) value += color_weight * colors[candidate][bins[cell]];
     value += model_weight * modelTerm(background);
-    value += mask_weight * shownTerm(evidence.shown, cell, !people[candidate].body.shown.empty());
+    const bool is_shown = candidate >= 0 && !people[candidate].body.shown.empty();
+    value += mask_weight * shownTerm(evidence.shown, cell, is_shown);
     if (isFlat(evidence, cell)) value += kOnPlane;
-    if (evidence.carried[cell] >= 0 && background != Background::agrees) value += kCarried;
+    if (evidence.carried[cell] >= 0 && background != Background::agrees) {
+      value += in_front ? kCarriedInFront : kCarried;
+    }
     if (evidence.flatness[cell] == Flatness::small || isOtherThing(evidence, cell)) {
       value = kNoPerson;
     }
