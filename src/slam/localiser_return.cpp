@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "posefusion/core/same_pose.hpp"
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/slam/localiser.hpp"
 #include "posefusion/tracking/pose_evidence.hpp"
 
@@ -138,8 +139,8 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
 
 void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_reckoned) {
   if (state_ != TrackingState::lost || belief_ >= place.log_odds) return;
-  const Eigen::Isometry3d T_map_now =
-      place.alignment.T_map_camera * T_reckoned.inverse() * T_reckoned_;
+  const Eigen::Isometry3d T_then_now = T_reckoned.inverse() * T_reckoned_;
+  const Eigen::Isometry3d T_map_now = place.alignment.T_map_camera * T_then_now;
   const bool is_known_already = previous_.fragment == place.fragment &&
                                 isWithin(previous_.T_map_camera.inverse() * T_map_now, kSamePose);
   const double confirmed =
@@ -148,7 +149,9 @@ void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_re
   landmarks_.move(T_map_now * previous_.T_map_camera.inverse());
   previous_.fragment = place.fragment;
   previous_.T_map_camera = T_map_now;
-  previous_.covariance = covarianceOf(kSamePose);
+  // As well as the place was known then; the way since is as good as alignments agree.
+  previous_.covariance = propagated(adjoint(T_then_now.inverse()), place.alignment.covariance) +
+                         covarianceOf(kSamePose);
   previous_.velocity.setZero();
   belief_ = confirmed;
   is_suggested_ = true;

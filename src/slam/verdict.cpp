@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "posefusion/core/same_pose.hpp"
 #include "posefusion/core/symmetric.hpp"
 
 namespace pf {
@@ -16,6 +15,9 @@ constexpr double kMaxMahalanobis2 = 30.0;
 constexpr double kAgreeing_m = 0.02, kAgreeing_rad = 0.015;
 // A converged alignment may still be a step of this from its end.
 constexpr double kUnfinished_m = 0.004, kUnfinished_rad = 0.004;
+// A step from a measured prediction that the images may prove: no robot makes a longer one between
+// two frames.
+constexpr double kMaxOverruled_m = 0.08, kMaxOverruled_rad = 0.07;
 // Part of the model's points that a frame may see through: things are moved, people were fused.
 constexpr double kMaxSeenThrough = 0.25;
 // Part of the frame in the map below which a free direction is not left to the prior.
@@ -81,8 +83,7 @@ Verdict judge(const WorkingFrame& frame, const TrackingResult& r, const PosePrio
     return {FrameOutcome::fused, text, prior.is_measured ? Proof::none : Proof::likely};
   }
   if (!prior.is_measured) return {FrameOutcome::jumped, text};
-  // No robot makes a longer step between two frames than aligning leads back from.
-  if (!isWithin(difference, kSamePlace)) {
+  if (!isWithin(difference, kMaxOverruled_m, kMaxOverruled_rad)) {
     return {FrameOutcome::disagrees, text};
   }
   // Where both are sure, alignment is right: it has a thousand times the pixels, and corners may
