@@ -138,10 +138,10 @@ TEST_F(MapperTest, AFusedPersonLeavesTheMapWhereTheSegmenterFindsOne) {
   Mapper with_mask(config()), without_mask(config());
   RgbdFrame frame = room().frame(0).frame;
   const RgbdFrame with_person = frame;
-  const auto step = [&](const cv::Mat& in_map_mask) {
+  const auto step = [&](const cv::Mat& mask) {
     frame.stamp_ns += 33333333;
     without_mask.process({frame, {}, {}});
-    return with_mask.process({frame, {}, {}, false, in_map_mask, with_person.depth}).outcome;
+    return with_mask.process({frame, mask, {}, false, with_person.depth}).outcome;
   };
   for (int i = 0; i < 15; ++i) ASSERT_EQ(step({}), FrameOutcome::fused);
   cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);

@@ -128,8 +128,8 @@ TEST(SurfelUpdate, FusedPeopleGoWhereTheSegmenterFindsThem) {
   SurfelMap map{MapConfig{}};
   fuseOften(30, scene(0.0, 1.5), map);
   FusionOptions options;
-  options.in_map_mask = cv::Mat::zeros(120, 160, CV_8UC1);
-  options.in_map_mask(person).setTo(255);
+  options.mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  options.mask(person).setTo(255);
   options.input_depth_m = cv::Mat::zeros(120, 160, CV_32FC1);
   options.input_depth_m(kBoard).setTo(1.5);
   WorkingFrame masked = scene(0.0, 1.5);
@@ -148,7 +148,7 @@ TEST(SurfelUpdate, FusedPeopleGoWhereTheSegmenterFindsThem) {
   fuseOften(45, masked, map, options);
   EXPECT_EQ(countIn(person), 0U);
   EXPECT_EQ(countIn(chair), before);
-  options.in_map_mask = cv::Mat::zeros(60, 80, CV_8UC1);
+  options.mask = cv::Mat::zeros(60, 80, CV_8UC1);
   EXPECT_THROW(Fuser().fuse(masked, kIdentity, map, options), InputError);
 }
 

@@ -24,7 +24,6 @@ constexpr char kBlurScore[] = "blur_score";
 constexpr char kPeople[] = "people";
 // Segmenter.
 constexpr char kMask[] = "mask";
-constexpr char kInMapMask[] = "in_map_mask";
 constexpr char kStaticDepth[] = "static_depth";
 constexpr char kFlow[] = "flow";
 constexpr char kPeopleUsed[] = "people_used";

@@ -98,23 +98,22 @@ void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const Working
 }
 
 /// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
-double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& people_m,
-               const cv::Mat& person_m) {
+double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& person_m) {
   double farthest = 0;
-  for (const cv::Mat& depth_m : {seen_m, people_m, person_m}) {
+  for (const cv::Mat& depth_m : {seen_m, person_m}) {
     double most = 0;
     if (!depth_m.empty()) cv::minMaxLoc(depth_m, nullptr, &most);
     farthest = std::max(farthest, most);
   }
   const double tolerance = 2.0 * sensor.tolerance(static_cast<float>(farthest), 5.0F);
-  return farthest + std::max<double>(tolerance, people_m.empty() ? 0.0 : NearPeople::kReach_m);
+  return farthest + std::max<double>(tolerance, person_m.empty() ? 0.0 : NearPeople::kReach_m);
 }
 
 }  // namespace
 
 /// What is kept between calls.
 struct Fuser::Scratch {
-  cv::Mat seen_m, full_m, people_m, input_m;
+  cv::Mat seen_m, full_m, input_m;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   std::vector<std::uint32_t> emptied;  // blocks of which it refuted much
@@ -127,10 +126,10 @@ Fuser::~Fuser() = default;
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
   Scratch& s = *scratch_;
-  findPeople(options.mask, options.input_depth_m, frame, s.full_m, s.people_m);
-  findPeople(options.in_map_mask, options.input_depth_m, frame, s.full_m, s.evidence.person_m);
+  const cv::Mat& person_m = s.evidence.person_m;
+  findPeople(options.mask, options.input_depth_m, frame, s.full_m, s.evidence.person_m);
   s.evidence.near_people.clear();
-  if (!s.people_m.empty()) s.evidence.near_people.assign(s.people_m, frame.camera);
+  if (!person_m.empty()) s.evidence.near_people.assign(person_m, frame.camera);
   map.advance(frame.pace);
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);
@@ -148,7 +147,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   s.evidence.explained.clear(s.evidence.measured);
   s.evidence.known_behind.assign(frame.depth_m.size());
   s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
-                            reachOf(frame.sensor, s.seen_m, s.people_m, s.evidence.person_m));
+                            reachOf(frame.sensor, s.seen_m, s.evidence.person_m));
   const auto ranges = rangesOf(map, s.visible);
   parallelFor(s.visible.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) map.blocks_.change(s.visible[k]);

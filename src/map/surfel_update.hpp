@@ -22,7 +22,7 @@ namespace pf {
 struct Evidence {
   MeasuredSurface measured;
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
-  cv::Mat person_m;  ///< CV_32FC1: depth of a person in the map, 0 = none; may be empty
+  cv::Mat person_m;  ///< CV_32FC1: depth of people and what else moves, 0 = none; may be empty
   NearPeople near_people;  ///< around all people in view
   Explained explained;
   KnownBehind known_behind;

@@ -19,8 +19,7 @@ FusionInput::FusionInput(ros::NodeHandle& handle, Matcher::Handler handler)
   flow_ = subscribe<4>(handle, topics::kFlow);
   blur_score_ =
       handle.subscribe(topics::kBlurScore, kInternalQueue, &FusionInput::onBlurScore, this);
-  in_map_mask_ = subscribe<6>(handle, topics::kInMapMask);
-  input_depth_ = subscribe<7>(handle, topics::kSharpDepth);
+  input_depth_ = subscribe<6>(handle, topics::kSharpDepth);
 }
 
 template <std::size_t Index>
@@ -38,13 +37,11 @@ void FusionInput::onBlurScore(const BlurScoreMsg::ConstPtr& score) {
 }
 
 pf::StaticFrame toStaticFrame(const FusionInput::Set& set) {
-  const auto& [info, color, depth, mask, flow, blur, in_map, input_depth] = set;
+  const auto& [info, color, depth, mask, flow, blur, input_depth] = set;
   pf::StaticFrame input;
   input.frame = toFrame(color, depth, toCamera(*info, false));
   const cv::Mat people = cv_bridge::toCvShare(mask)->image;
   if (cv::countNonZero(people) > 0) input.mask = people;
-  const cv::Mat people_in_map = cv_bridge::toCvShare(in_map)->image;
-  if (cv::countNonZero(people_in_map) > 0) input.in_map_mask = people_in_map;
   input.input_depth = toDepth(input_depth);
   input.flow = fromMessage(*flow);
   input.forced = blur->forced != 0;

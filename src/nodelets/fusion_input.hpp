@@ -16,10 +16,9 @@ namespace posefusion_ros {
 /// The topics that fusion takes, put together by their stamps.
 class FusionInput {
  public:
-  /// Camera, colour, static depth, mask, flow, blur score, mask of people in the map, sharp depth.
+  /// Camera, colour, static depth, mask, flow, blur score, sharp depth.
   using Matcher = ExactMatcher<sensor_msgs::CameraInfo, sensor_msgs::Image, sensor_msgs::Image,
-                               sensor_msgs::Image, SparseFlowMsg, BlurScoreMsg, sensor_msgs::Image,
-                               sensor_msgs::Image>;
+                               sensor_msgs::Image, SparseFlowMsg, BlurScoreMsg, sensor_msgs::Image>;
   using Set = Matcher::Set;
 
   /// `handler` is called in the callback queue of the handle.
@@ -37,7 +36,7 @@ class FusionInput {
   void onBlurScore(const BlurScoreMsg::ConstPtr& score);
 
   Matcher matcher_;
-  ros::Subscriber info_, color_, depth_, mask_, flow_, blur_score_, in_map_mask_, input_depth_;
+  ros::Subscriber info_, color_, depth_, mask_, flow_, blur_score_, input_depth_;
 };
 
 /// The frame in a set; shares the memory of its messages. Throws InputError naming what cannot be.

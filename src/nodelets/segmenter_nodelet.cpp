@@ -94,7 +94,6 @@ class SegmenterNodelet : public ChainNodelet {
     picture_publisher_ = handle.advertise<Image>(topics::kPeopleImage, 2);
     depth_publisher_ = handle.advertise<Image>(topics::kStaticDepth, kInternalQueue);
     flow_publisher_ = handle.advertise<SparseFlowMsg>(topics::kFlow, kInternalQueue);
-    in_map_publisher_ = handle.advertise<Image>(topics::kInMapMask, kInternalQueue);
     mask_publisher_ = handle.advertise<Image>(topics::kMask, kInternalQueue);
   }
 
@@ -215,12 +214,9 @@ class SegmenterNodelet : public ChainNodelet {
     depth_publisher_.publish(unchanged ? depth
                                        : sensor_msgs::ImageConstPtr(toImage(
                                              result.static_depth, depth->encoding, header)));
-    const auto orEmpty = [&](const cv::Mat& mask) {
-      const cv::Mat empty_mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
-      return sensor_msgs::ImageConstPtr(toImage(mask.empty() ? empty_mask : mask, "mono8", header));
-    };
-    in_map_publisher_.publish(orEmpty(result.in_map_mask));
-    mask_publisher_.publish(orEmpty(result.mask));
+    const cv::Mat mask =
+        result.mask.empty() ? cv::Mat(cv::Mat::zeros(frame.depth.size(), CV_8UC1)) : result.mask;
+    mask_publisher_.publish(sensor_msgs::ImageConstPtr(toImage(mask, "mono8", header)));
     watch().set("people", std::to_string(result.people.people.size()));
     passed(header.stamp);
   }
@@ -235,7 +231,7 @@ class SegmenterNodelet : public ChainNodelet {
   std::mutex publisher_mutex_;           // guards the publishers, which are advertised late
   std::string shown_frame_, map_frame_;  // of the skeletons, of the boxes
   ros::Publisher used_publisher_, moving_publisher_, moving_marker_publisher_, marker_publisher_,
-      picture_publisher_, depth_publisher_, flow_publisher_, in_map_publisher_, mask_publisher_;
+      picture_publisher_, depth_publisher_, flow_publisher_, mask_publisher_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<Worker<Matcher::Set>> worker_;
   // Last, so that they end first: their callbacks use the rest.

@@ -46,9 +46,8 @@ bool PeopleSegmenter::findPeople(const RgbdFrame& frame, const FlowImages& flow,
 }
 
 /// The people as reported, and as kept for the next frame.
-void PeopleSegmenter::keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result) {
+void PeopleSegmenter::keepPeople(bool with_map, Segmentation& result) {
   State& s = *state_;
-  result.in_map_mask = s.inMapMask(frame, result.mask);
   for (const TrackedPerson& tracked : s.people) {
     result.people.people.push_back(tracked.person);
     dropJointsOutside(s.evidence.grid, 0.0F, result.people.people.back());
@@ -97,7 +96,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
   if (config_.energy == "paper") return segmentAsThePaper(frame, people, up_camera);
   State& s = *state_;
   s.worth = s.pace_meter.add(frame.stamp_ns).worth();
-  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
+  Segmentation result{cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_uncorrected_camera = Eigen::Isometry3d::Identity();
   if (!config_.enabled) return result;
@@ -114,7 +113,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
   findObjects(frame, background, T_uncorrected_camera, taken, result);
   const bool is_empty = std::all_of(taken.begin(), taken.end(), [](auto t) { return t == 0; });
   if (has_people || !is_empty) s.takeOut(frame, taken, config_.margin_px, result);
-  if (has_people) keepPeople(frame, background != nullptr, result);
+  if (has_people) keepPeople(background != nullptr, result);
   placePeople(background, T_uncorrected_camera, result);
   s.motion.keep(frame.stamp_ns, result.mask, s.depth_m);
   return result;
@@ -123,7 +122,7 @@ Segmentation PeopleSegmenter::segment(const RgbdFrame& frame, const FlowImages& 
 Segmentation PeopleSegmenter::segmentAsThePaper(const RgbdFrame& frame, const People& people,
                                                 const std::optional<Eigen::Vector3d>& up_camera) {
   State& s = *state_;
-  Segmentation result{cv::Mat(), cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
+  Segmentation result{cv::Mat(), frame.depth, {frame.stamp_ns, people.detected, {}}, {}};
   if (!config_.enabled || people.people.empty()) return result;
   s.takeGrid(frame, config_.grid_width);
   const std::vector<Eigen::Vector3f> seeds = liftJoints(people, s.evidence.grid);

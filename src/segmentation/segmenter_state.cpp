@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "posefusion/segmentation/location.hpp"
-#include "posefusion/segmentation/mapped_people.hpp"
 #include "posefusion/segmentation/upsample.hpp"
 
 namespace pf {
@@ -112,12 +111,6 @@ void PeopleSegmenter::State::keepPeople(bool with_map) {
   }
   const auto isTooSmall = [](const TrackedPerson& t) { return t.cells.size() < kMinMaskCells; };
   people.erase(std::remove_if(people.begin(), people.end(), isTooSmall), people.end());
-}
-
-cv::Mat PeopleSegmenter::State::inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const {
-  const std::vector<std::uint8_t> mapped = findMappedPeople(evidence, people, labels);
-  if (std::count(mapped.begin(), mapped.end(), 0) == evidence.grid.size()) return {};
-  return upsampleMask(frame, depth_m, evidence.grid, mapped) & mask;
 }
 
 /// Takes these cells out of the depth, at full resolution.

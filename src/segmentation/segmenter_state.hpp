@@ -46,7 +46,6 @@ struct PeopleSegmenter::State {
   void markShownPeople();
   void cut(const SegmentationConfig& config);
   void keepPeople(bool with_map);
-  cv::Mat inMapMask(const RgbdFrame& frame, const cv::Mat& mask) const;
   void takeOut(const RgbdFrame& frame, const std::vector<std::uint8_t>& taken, int margin_px,
                Segmentation& result) const;
 };

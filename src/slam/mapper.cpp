@@ -16,11 +16,11 @@ std::string Mapper::State::defect(const StaticFrame& still) const {
   const auto isLikeDepth = [&](const cv::Mat& image, int type) {
     return image.type() == type && image.size() == input.depth.size();
   };
-  const bool none = still.in_map_mask.empty();
+  const bool mask_fits = still.mask.empty() || isLikeDepth(still.mask, CV_8UC1);
   const bool depth_fits =
-      isLikeDepth(still.input_depth, input.depth.type()) || (none && still.input_depth.empty());
-  if (text.empty() && !(depth_fits && (none || isLikeDepth(still.in_map_mask, CV_8UC1)))) {
-    text = "the mask of people in the map, or the depth with people, is not like the frame's depth";
+      still.input_depth.empty() || isLikeDepth(still.input_depth, input.depth.type());
+  if (text.empty() && !(mask_fits && depth_fits)) {
+    text = "the mask of people, or the depth with people, is not like the frame's depth";
   }
   if (text.empty() && sees_other_camera) {
     text = "the camera (" + describe(input.camera) + ") is not that of the map (" +
@@ -72,9 +72,8 @@ void Mapper::State::fuse(const StaticFrame& input, const Location& location) {
   options.may_remove_stable = !location.is_recent_return;
   options.gain = 1.0F / b.gain;
   options.offset = -b.offset / b.gain;
-  if (!input.input_depth.empty() && !(input.mask.empty() && input.in_map_mask.empty())) {
+  if (!input.input_depth.empty() && !input.mask.empty()) {
     options.mask = input.mask;
-    options.in_map_mask = input.in_map_mask;
     RgbdFrame with_people = input.frame;
     with_people.depth = input.input_depth;
     depthInMetres(with_people, config.frame.min_depth_m, config.frame.max_depth_m, input_depth_m);

@@ -77,7 +77,6 @@ ProcessedFrame Pipeline::map(SeenFrame seen) {
   StaticFrame still{frame, out.segmentation.mask, out.seen.flow.corners()};
   still.frame.depth = out.segmentation.static_depth;
   still.forced = out.seen.blur.forced;
-  still.in_map_mask = out.segmentation.in_map_mask;
   still.input_depth = frame.depth;
   robot_.playUntil(frame.stamp_ns, mapper_);
   out.status = mapper_.process(still);

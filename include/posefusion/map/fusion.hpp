@@ -18,14 +18,12 @@ struct FusionOptions {
   /// False while the pose is on probation: nothing then counts against stable surfels.
   bool may_remove_stable = true;
 
-  /// CV_8UC1, size of the input frame, 255 = a person; may be empty. What was mapped close to
-  /// people less than 1.5 s ago, and is not seen in this frame, may be what was mapped of them
-  /// before they were found: that counts as two frames that contradict it.
+  /// CV_8UC1, size of the input frame, 255 = a person or another moving object; may be empty. A
+  /// surfel seen there at the depth of `input_depth_m` was fused from one by mistake: that
+  /// contradicts it. What was mapped close by less than 1.5 s ago, and is not seen in this frame,
+  /// may be what was mapped of people before they were found: that counts as two such frames.
   cv::Mat mask;
-  /// Like `mask`: a person that is part of the map. A surfel seen there at the depth of
-  /// `input_depth_m` was fused from a person by mistake: that contradicts it.
-  cv::Mat in_map_mask;
-  /// CV_32FC1 (m, 0 = none), size of the masks: the depth before people were taken out. What a
+  /// CV_32FC1 (m, 0 = none), size of the mask: the depth before people were taken out. What a
   /// person stands behind is not there: it counts as seen through.
   cv::Mat input_depth_m;
 

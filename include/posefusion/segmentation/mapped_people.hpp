@@ -18,10 +18,4 @@ bool isSure(const Person& person);
 /// person was mapped while undetected.
 bool isMappedPerson(const Evidence& evidence, const std::vector<TrackedPerson>& people, int cell);
 
-/// Cells of the cut (`labels`, 1 = person) that are surfaces of the map and belong to a surely
-/// detected person: close to the skeleton, not on a large plane. 1 = such a cell.
-std::vector<std::uint8_t> findMappedPeople(const Evidence& evidence,
-                                           const std::vector<TrackedPerson>& people,
-                                           const std::vector<std::uint8_t>& labels);
-
 }  // namespace pf

@@ -23,9 +23,6 @@ constexpr double kFarthestPerson_m = 8.0;
 struct Segmentation {
   cv::Mat mask;          ///< CV_8UC1, frame size, 255 = a person or a moving object; empty when
                          ///< there is none
-  cv::Mat in_map_mask;   ///< CV_8UC1, frame size, 255 = a surface of the map that is a person's, as
-                         ///< a sure detection shows: what the map holds there must go; empty when
-                         ///< there is none
   cv::Mat static_depth;  ///< depth of the frame, the mask removed (0 or NaN); the very same pixels
                          ///< as the input when there is none
   People people;         ///< as used: detected, or carried forward to this frame
@@ -60,7 +57,7 @@ class PeopleSegmenter {
  private:
   struct State;
   bool findPeople(const RgbdFrame& frame, const FlowImages& flow, const People& people);
-  void keepPeople(const RgbdFrame& frame, bool with_map, Segmentation& result);
+  void keepPeople(bool with_map, Segmentation& result);
   void expectObjects(const RgbdFrame& frame, const ModelView* view,
                      const Eigen::Isometry3d& T_uncorrected_camera);
   void findObjects(const RgbdFrame& frame, const ModelView* view,

@@ -25,14 +25,13 @@ class SurfelMap;
 /// A frame without its people, as mapping takes it.
 struct StaticFrame {
   RgbdFrame frame;      ///< `depth` has no people left in it
-  cv::Mat mask;         ///< CV_8UC1, 255 = the color is a person's; may be empty
+  cv::Mat mask;         ///< CV_8UC1, 255 = the color is a person's, and what the map has at its
+                        ///< depth was fused by mistake; may be empty
   SparseFlow flow;      ///< corners followed from the sharp frame before
   bool forced = false;  ///< passed the blur gate by force: located at best, not fused
 
-  /// CV_8UC1, 255 = a surface of the map that is a person's, fused by mistake; may be empty.
-  cv::Mat in_map_mask{};
-  /// The depth before people were taken out, type of `frame.depth`; where there is such a mask, it
-  /// must be given, else it may be empty: what is close to people is then mapped like the rest.
+  /// The depth before people were taken out, type of `frame.depth`. May be empty: people who were
+  /// mapped then stay, and what is close to people is mapped like the rest.
   cv::Mat input_depth{};
 };
 
