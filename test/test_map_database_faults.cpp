@@ -183,9 +183,9 @@ TEST(MapDatabase, AFullDiskLosesOnlyWhatDidNotFit) {
   readAll(path);
 }
 
-/// Writes until it is killed; sends a byte to `pipe_end` after the first writes.
-[[noreturn]] void writeUntilKilled(const std::string& path, int pipe_end) {
-  ExampleMap example;
+/// Writes until it is killed; sends a byte to `pipe_end` after the first writes. For a forked
+/// process: the threads of TBB are not in it, and what waits for them waits for ever.
+[[noreturn]] void writeUntilKilled(const std::string& path, ExampleMap& example, int pipe_end) {
   MapWriter writer(path, MapWriter::Mode::create);
   for (;;) {
     writer.write(example.update);
@@ -201,15 +201,16 @@ TEST(MapDatabase, AKilledWriterLeavesAWholeMap) {
     const std::string path = folder / "map.pfdb";
     int pipe_ends[2];
     ASSERT_EQ(pipe(pipe_ends), 0);
+    ExampleMap example;
     const pid_t child = fork();
-    if (child == 0) writeUntilKilled(path, pipe_ends[1]);
+    if (child == 0) writeUntilKilled(path, example, pipe_ends[1]);
+    close(pipe_ends[1]);  // a child that ends too soon ends the waiting too
     char byte = 0;
     ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     close(pipe_ends[0]);
-    close(pipe_ends[1]);
     const std::string before = readFile(path);
     {
       const MapReader reader(path);
