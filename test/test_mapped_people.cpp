@@ -30,6 +30,7 @@ TEST(MappedPeople, FindsWhereTheMapHoldsAPerson) {
     scene.room.depth_m = scene.frame.depth;
     const Segmentation result = SegmenterChain().segment(scene.frame, scene.people, &scene.room);
     ASSERT_FALSE(result.mask.empty()) << wall_z;
+    EXPECT_EQ(result.mask.type(), CV_8UC1);
     EXPECT_GT(iou(result.mask, scene.truth), 0.8) << wall_z;
   }
   // Surfaces of a few frames only.

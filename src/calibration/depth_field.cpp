@@ -2,13 +2,13 @@
 #include "posefusion/calibration/depth_field.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "posefusion/calibration/cubic_splines.hpp"
 
 namespace pf {
 namespace {
@@ -16,24 +16,7 @@ namespace {
 // Places that represent the image.
 constexpr int kAcross = 64, kDown = 48;
 
-/// The four cubic B-splines that are not zero at a place in [0, 1], and their derivatives by it
-/// (de Boor, "A Practical Guide to Splines", 1978; uniform knots).
-struct Cubic {
-  int first;
-  std::array<double, 4> weight, slope;
-};
-
-Cubic cubicAt(double place, int count) {
-  const int intervals = count - 3;
-  const double at = std::clamp(place, 0.0, 1.0) * intervals;
-  const int first = std::min(static_cast<int>(at), intervals - 1);
-  const double t = at - first, s = 1 - t;
-  return {first,
-          {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
-           t * t * t / 6},
-          {-intervals * s * s / 2, intervals * (3 * t * t - 4 * t) / 2,
-           -intervals * (3 * s * s - 4 * s) / 2, intervals * t * t / 2}};
-}
+using Cubic = CubicSplines<double>;
 
 /// The integrals of the splines along one axis over [0, 1]: of each interval the four that are not
 /// zero there have 1, 11, 11 and 1 parts of 24.
@@ -63,8 +46,8 @@ Eigen::MatrixXd fitting(int count, int samples) {
   constexpr double kSmooth = 1e-6;
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(samples, count);
   for (int i = 0; i < samples; ++i) {
-    const Cubic c = cubicAt(static_cast<double>(i) / (samples - 1), count);
-    for (int k = 0; k < 4; ++k) values(i, c.first + k) = c.weight[static_cast<std::size_t>(k)];
+    const Cubic c(static_cast<double>(i) / (samples - 1), count);
+    for (int k = 0; k < 4; ++k) values(i, c.first + k) = c.weight[k];
   }
   Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(count - 2, count);
   for (int i = 0; i + 2 < count; ++i) bend.row(i).segment<3>(i) << 1, -2, 1;
@@ -94,7 +77,7 @@ std::size_t DepthField::nodeCount(int columns, int rows) {
 }
 
 FieldWeights DepthField::weights(double x, double y) const {
-  const Cubic c = cubicAt(x, columns_), r = cubicAt(y, rows_);
+  const Cubic c(x, columns_), r(y, rows_);
   FieldWeights w;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {

@@ -126,10 +126,11 @@ Fuser::~Fuser() = default;
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
   Scratch& s = *scratch_;
-  const cv::Mat& person_m = s.evidence.person_m;
   findPeople(options.mask, options.input_depth_m, frame, s.full_m, s.evidence.person_m);
   s.evidence.near_people.clear();
-  if (!person_m.empty()) s.evidence.near_people.assign(person_m, frame.camera);
+  if (!s.evidence.person_m.empty()) {
+    s.evidence.near_people.assign(s.evidence.person_m, frame.camera);
+  }
   map.advance(frame.pace);
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);

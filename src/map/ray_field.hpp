@@ -1,37 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
+#include "posefusion/calibration/cubic_splines.hpp"
 #include "posefusion/calibration/depth_field.hpp"
 #include "posefusion/core/camera.hpp"
 
 namespace pf {
-
-/// The four cubic B-splines that are not zero at a place along one axis of a field, and their
-/// slopes by that place.
-struct SplineWeights {
-  int first;
-  float weight[4], slope[4];
-
-  /// `place`: 0..1 over the image; others count as on its border. `intervals`: between nodes.
-  SplineWeights(float place, int intervals) {
-    const auto n = static_cast<float>(intervals);
-    const float at = std::min(std::max(place, 0.0F), 1.0F) * n;
-    first = std::min(static_cast<int>(at), intervals - 1);
-    const float t = at - static_cast<float>(first), s = 1 - t;
-    const float by = 0.5F * n;
-    weight[0] = s * s * s / 6;
-    weight[1] = (3 * t * t * t - 6 * t * t + 4) / 6;
-    weight[2] = (3 * s * s * s - 6 * s * s + 4) / 6;
-    weight[3] = t * t * t / 6;
-    slope[0] = -by * s * s;
-    slope[1] = by * (3 * t * t - 4 * t);
-    slope[2] = -by * (3 * s * s - 4 * s);
-    slope[3] = by * t * t;
-  }
-};
 
 /// A depth field over the rays of a camera, in floats, for loops over surfels: a value, so that a
 /// loop may have its own.
@@ -56,8 +32,8 @@ class RayField {
 
   /// For the ray (x, y, 1).
   Value at(float x, float y) const {
-    const SplineWeights across((fx_ * x + cx_ + 0.5F) / width_, columns_ - 3);
-    const SplineWeights down((fy_ * y + cy_ + 0.5F) / height_, rows_ - 3);
+    const CubicSplines<float> across((fx_ * x + cx_ + 0.5F) / width_, columns_);
+    const CubicSplines<float> down((fy_ * y + cy_ + 0.5F) / height_, rows_);
     Value sum{0, 0, 0};
     for (int i = 0; i < 4; ++i) {
       const int k = (down.first + i) * columns_ + across.first;
