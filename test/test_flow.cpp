@@ -53,6 +53,21 @@ TEST(Flow, FollowsAShiftToATenthOfAPixel) {
   EXPECT_NEAR(points.after[1].y, 328.75, 0.3);
 }
 
+TEST(Flow, AGreyPictureIsFollowedAsItsColorsAre) {
+  FlowTracker of_color, of_grey;
+  for (const std::int64_t stamp_ns : {1, 2}) {
+    RgbdFrame frame = frameOf(stamp_ns == 2 ? 7.5 : 0.0, 0, stamp_ns, {320, 240});
+    cv::Mat grey;
+    cv::cvtColor(frame.color, grey, cv::COLOR_RGB2GRAY);
+    of_color.advance(frame);
+    of_grey.advance(grey, stamp_ns);
+  }
+  const SparseFlow &color = of_color.images().corners(), &grey = of_grey.images().corners();
+  ASSERT_GT(color.after.size(), 50U);
+  EXPECT_EQ(color.after, grey.after);
+  EXPECT_EQ(color.to_ns, grey.to_ns);
+}
+
 TEST(Flow, CornersOfOnePosterDoNotKeepTheOtherCellsEmpty) {
   RgbdFrame frame = frameOf(0, 0, 1);
   cv::Mat faint;

@@ -65,23 +65,39 @@ FollowedPoints FlowImages::follow(const std::vector<cv::Point2f>& before) const 
 }
 
 const SparseFlow& FlowTracker::advance(const RgbdFrame& frame) {
-  images_.last_.swap(images_.newest_);
-  const int width = std::min(kFlowWidth, frame.color.cols);
-  images_.scale_ = static_cast<float>(width) / static_cast<float>(frame.color.cols);
-  const int height = std::max(1, static_cast<int>(std::lround(frame.color.rows * images_.scale_)));
-  cv::resize(frame.color, small_, {width, height}, 0, 0, cv::INTER_AREA);
+  shrink(frame.color);
   cv::cvtColor(small_, grey_, cv::COLOR_RGB2GRAY);
+  return advance(frame.color.size(), frame.stamp_ns);
+}
+
+const SparseFlow& FlowTracker::advance(const cv::Mat& grey, std::int64_t stamp_ns) {
+  shrink(grey);
+  small_.copyTo(grey_);
+  return advance(grey.size(), stamp_ns);
+}
+
+/// Leaves the picture in small_.
+void FlowTracker::shrink(const cv::Mat& picture) {
+  const int width = std::min(kFlowWidth, picture.cols);
+  images_.scale_ = static_cast<float>(width) / static_cast<float>(picture.cols);
+  const int height = std::max(1, static_cast<int>(std::lround(picture.rows * images_.scale_)));
+  cv::resize(picture, small_, {width, height}, 0, 0, cv::INTER_AREA);
+}
+
+/// Of the picture that lies in grey_.
+const SparseFlow& FlowTracker::advance(cv::Size frame_size, std::int64_t stamp_ns) {
+  images_.last_.swap(images_.newest_);
   flatten();
   images_.newest_.clear();
   cv::buildOpticalFlowPyramid(grey_, images_.newest_, kWindow, kPyramidLevels);
-  images_.comparable_ = !images_.last_.empty() && frame_size_ == frame.color.size();
-  frame_size_ = frame.color.size();
+  images_.comparable_ = !images_.last_.empty() && frame_size_ == frame_size;
+  frame_size_ = frame_size;
   SparseFlow& flow = images_.corners_;
   flow.before.clear();
   flow.after.clear();
   flow.ids.clear();
   flow.from_ns = newest_ns_;
-  flow.to_ns = newest_ns_ = frame.stamp_ns;
+  flow.to_ns = newest_ns_ = stamp_ns;
   if (images_.comparable_ && !corners_.empty()) followCorners();
   keep(flow.after);
   findCorners();

@@ -7,6 +7,7 @@
 
 #include "posefusion/calibration/depth_correction.hpp"
 #include "posefusion/core/same_pose.hpp"
+#include "posefusion/tracking/view_motion.hpp"
 
 namespace pf {
 namespace {
@@ -44,8 +45,9 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   const PosePrior prior = expect(frame, stamp_ns, flow, view, told, location);
-  Verdict verdict;
-  location.tracking = align(frame, forced, prior, render, verdict);
+  const Attempt aligned = align(frame, forced, prior, render);
+  location.tracking = aligned.result;
+  Verdict verdict = aligned.verdict;
   if (verdict.outcome == FrameOutcome::fused) {
     verdict = askFurther(frame, location, prior, {stamp_ns, forced}, render.view);
   }
@@ -77,32 +79,51 @@ bool Localiser::isProven(const WorkingFrame& frame, const TrackingResult& result
   return poseEvidence(frame, result, render.view(result.T_map_camera)).log_odds >= needed;
 }
 
+Localiser::Attempt Localiser::alignFrom(const Eigen::Isometry3d& guess, bool firm,
+                                        const WorkingFrame& frame, bool forced,
+                                        const PosePrior& prior, const MapRenderers& render) const {
+  const RenderedModel model = render.model(guess);
+  const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
+  Attempt attempt{track(frame, model.points, start, config_), {}};
+  attempt.verdict = judge(frame, attempt.result, prior, config_);
+  // A blurred picture proves nothing, and is not fused.
+  if (attempt.isBelieved() && !forced &&
+      !isProven(frame, attempt.result, attempt.verdict, render)) {
+    attempt.verdict.outcome = prior.is_measured ? FrameOutcome::disagrees : FrameOutcome::jumped;
+  }
+  return attempt;
+}
+
+/// What the images alone speak for may be one of several minima along a wall: corners of the drawn
+/// map tell where a better one lies.
+Localiser::Attempt Localiser::withoutSlip(const Attempt& found, const WorkingFrame& frame,
+                                          const PosePrior& prior,
+                                          const MapRenderers& render) const {
+  if (!found.isBelieved() || found.verdict.proof == Proof::none) return found;
+  const Eigen::Isometry3d& T_map_camera = found.result.T_map_camera;
+  const SparseMotion left = motionFromView(frame, render.view(T_map_camera));
+  if (!left.found || isWithin(left.T_before_after, kSamePose)) return found;
+  const Attempt moved =
+      alignFrom(T_map_camera * left.T_before_after, false, frame, false, prior, render);
+  return moved.isBelieved() && moved.result.cost < found.result.cost ? moved : found;
+}
+
 /// Aligns from the prediction and, where the result is not believed, from other starts.
-TrackingResult Localiser::align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
-                                const MapRenderers& render, Verdict& verdict) const {
-  TrackingResult best;
-  best.T_map_camera = prior.T_map_camera;
+Localiser::Attempt Localiser::align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
+                                    const MapRenderers& render) const {
+  Attempt best;
+  best.result.T_map_camera = prior.T_map_camera;
   const double pixels = static_cast<double>(frame.depth_m.total());
   if (frame.valid_pixels < config_.min_view_fraction * pixels) {
-    verdict = {FrameOutcome::no_depth,
-               percentOf(frame.valid_pixels, pixels, "of the pixels have depth")};
+    best.verdict = {FrameOutcome::no_depth,
+                    percentOf(frame.valid_pixels, pixels, "of the pixels have depth")};
     return best;
   }
   const auto attempt = [&](const Eigen::Isometry3d& guess, bool firm) {
-    const RenderedModel model = render.model(guess);
-    const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
-    const TrackingResult result = track(frame, model.points, start, config_);
-    Verdict found = judge(frame, result, prior, config_);
-    // A blurred picture proves nothing, and is not fused.
-    if (found.outcome == FrameOutcome::fused && !forced &&
-        !isProven(frame, result, found, render)) {
-      found.outcome = prior.is_measured ? FrameOutcome::disagrees : FrameOutcome::jumped;
-    }
-    const bool better = found.outcome == FrameOutcome::fused || best.candidates == 0;
-    if (!better) return false;
-    best = result;
-    verdict = found;
-    return found.outcome == FrameOutcome::fused;
+    Attempt found = alignFrom(guess, firm, frame, forced, prior, render);
+    if (!forced) found = withoutSlip(found, frame, prior, render);
+    if (found.isBelieved() || best.result.candidates == 0) best = found;
+    return found.isBelieved();
   };
   if (attempt(prior.T_map_camera, false)) return best;
   // The images may have slid along a wall: hold the motion where it is known.

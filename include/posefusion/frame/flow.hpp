@@ -63,6 +63,8 @@ class FlowTracker {
   /// Takes in the next frame and follows the corners of the one before; a corner counts only if it
   /// comes back when followed the other way. Empty for the first frame and after a change of size.
   const SparseFlow& advance(const RgbdFrame& frame);
+  /// The same with a grey picture, CV_8UC1.
+  const SparseFlow& advance(const cv::Mat& grey, std::int64_t stamp_ns);
 
   /// The frame before and the newest one.
   const FlowImages& images() const { return images_; }
@@ -70,6 +72,8 @@ class FlowTracker {
   void reset();
 
  private:
+  const SparseFlow& advance(cv::Size frame_size, std::int64_t stamp_ns);
+  void shrink(const cv::Mat& picture);
   void flatten();
   void followCorners();
   cv::Point2f wholeShift();

@@ -147,8 +147,19 @@ class Localiser {
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
   PosePrior predict(const Location& location, double elapsed_s) const;
-  TrackingResult align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
-                       const MapRenderers& render, Verdict& verdict) const;
+  /// An alignment, and what is thought of it.
+  struct Attempt {
+    TrackingResult result;
+    Verdict verdict;
+
+    bool isBelieved() const { return verdict.outcome == FrameOutcome::fused; }
+  };
+  Attempt align(const WorkingFrame& frame, bool forced, const PosePrior& prior,
+                const MapRenderers& render) const;
+  Attempt alignFrom(const Eigen::Isometry3d& guess, bool firm, const WorkingFrame& frame,
+                    bool forced, const PosePrior& prior, const MapRenderers& render) const;
+  Attempt withoutSlip(const Attempt& found, const WorkingFrame& frame, const PosePrior& prior,
+                      const MapRenderers& render) const;
   bool isProven(const WorkingFrame& frame, const TrackingResult& result, const Verdict& verdict,
                 const MapRenderers& render) const;
   void carry(const MotionPrior& step, bool is_known);
