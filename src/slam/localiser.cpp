@@ -95,11 +95,14 @@ Localiser::Attempt Localiser::alignFrom(const Eigen::Isometry3d& guess, bool fir
 }
 
 /// What the images alone speak for may be one of several minima along a wall: corners of the drawn
-/// map tell where a better one lies.
+/// map tell where a better one lies. Not while lost: of a wrong place the best minimum is as wrong,
+/// and only looks more likely.
 Localiser::Attempt Localiser::withoutSlip(const Attempt& found, const WorkingFrame& frame,
                                           const PosePrior& prior,
                                           const MapRenderers& render) const {
-  if (!found.isBelieved() || found.verdict.proof == Proof::none) return found;
+  if (!found.isBelieved() || found.verdict.proof == Proof::none || state_ == TrackingState::lost) {
+    return found;
+  }
   const Eigen::Isometry3d& T_map_camera = found.result.T_map_camera;
   const SparseMotion left = motionFromView(frame, render.view(T_map_camera));
   if (!left.found || isWithin(left.T_before_after, kSamePose)) return found;
