@@ -52,6 +52,29 @@ TEST(Fuser, WhatComesBeforeAKnownWallIsStableOnlyLater) {
   EXPECT_GT(stableNear(map, 1.5), 1000U) << "what stays is furniture";
 }
 
+TEST(Fuser, AHoleInTheKnownWallMakesNoPartOfWhatComesStableSooner) {
+  SurfelMap map{MapConfig{}};
+  WorkingFrame wall = scene(3.0);
+  wall.depth_m(cv::Rect(74, 0, 12, 120)).setTo(0);
+  fuseOften(10, wall, map);
+  fuseOften(30, scene(3.0, 1.5), map);
+  EXPECT_GT(countNear(map, 1.5), 1000U);
+  EXPECT_EQ(stableNear(map, 1.5), 0U);
+}
+
+TEST(Fuser, WhatStandsBesideAThingThatCameIsStableSoon) {
+  SurfelMap map{MapConfig{}};
+  WorkingFrame wall = scene(3.0);
+  wall.depth_m(cv::Rect(80, 0, 80, 120)).setTo(0);
+  fuseOften(10, wall, map);
+  WorkingFrame both = scene(3.0);
+  both.depth_m(cv::Rect(40, 40, 40, 40)).setTo(1.5);  // came
+  both.depth_m(cv::Rect(80, 40, 40, 40)).setTo(2.5);  // what is behind it was never seen
+  fuseOften(10, both, map);
+  EXPECT_EQ(stableNear(map, 1.5), 0U);
+  EXPECT_GT(stableNear(map, 2.5), 1000U);
+}
+
 TEST(Fuser, WhatIsSeenTogetherWithItsWallIsStableSoon) {
   SurfelMap map{MapConfig{}};
   fuseOften(10, scene(3.0, 1.5), map);

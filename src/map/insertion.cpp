@@ -91,7 +91,8 @@ void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_
       const MeasuredSurface::Level& level = evidence.measured[rows[k].level];
       forEachWanted(evidence, rows[k].level, rows[k].v, working, [&](const Wanted& w) {
         writeSurfel(w, level, to_map, frame, options, next, surfels);
-        if (evidence.known_behind.has(w.working_u, w.working_v)) {
+        if (evidence.known_behind.has(w.working_u, w.working_v, w.z,
+                                      evidence.measured.agreement(w.z))) {
           surfels.odds[next] += static_odds::kNewcomer;
         }
         ++next;

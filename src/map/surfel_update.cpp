@@ -120,7 +120,9 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
   const Measurement m = measure(p);
   if (m.depth <= 0) return false;
   const float off = std::abs(m.depth - p.z);
-  if (p.z - m.depth > kWellBefore_m && map_.isStable(s, i)) evidence_.known_behind.mark(p.u, p.v);
+  if (p.z - m.depth > kWellBefore_m && map_.isStable(s, i)) {
+    evidence_.known_behind.mark(p.u, p.v, m.depth);
+  }
   if (off > std::max(tolerance, kMostLayer_m)) return false;
   Eigen::Vector3f own;
   to_camera_.direction(s.nx[i], s.ny[i], s.nz[i], own.x(), own.y(), own.z());
