@@ -53,6 +53,11 @@ void follow(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
 
 }  // namespace
 
+bool isSet(const cv::Mat& mask, const cv::Point2f& pixel) {
+  const cv::Point at(cvRound(pixel.x), cvRound(pixel.y));
+  return cv::Rect({}, mask.size()).contains(at) && mask.at<std::uint8_t>(at) != 0;
+}
+
 FollowedPoints FlowImages::follow(const std::vector<cv::Point2f>& before) const {
   FollowedPoints points{before, std::vector<std::uint8_t>(before.size(), 0)};
   if (!comparable_ || before.empty()) return points;
@@ -160,10 +165,8 @@ void FlowTracker::keep(const std::vector<cv::Point2f>& followed) {
   free_.setTo(255);
   for (std::size_t i = 0; i < followed.size(); ++i) {
     const cv::Point2f p = toPyramid(followed[i], images_.scale_);
+    if (!isSet(free_, p)) continue;
     const cv::Point at(cvRound(p.x), cvRound(p.y));
-    if (!cv::Rect(0, 0, grey_.cols, grey_.rows).contains(at) || free_.at<std::uint8_t>(at) == 0) {
-      continue;
-    }
     cv::circle(free_, at, static_cast<int>(kCornerSpacing_px), 0, cv::FILLED);
     corners_.push_back(p);
     ids_.push_back(images_.corners_.ids[i]);

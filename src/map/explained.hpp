@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "lower_to.hpp"
 #include "measured_surface.hpp"
 #include "pixel_box.hpp"
 #include "posefusion/core/parallel.hpp"
@@ -57,10 +58,7 @@ class Explained {
     for (int y = box.first_v; y <= box.last_v; ++y) {
       std::int64_t* row = &pixels_[level.at(0, y)];
       for (int x = box.first_u; x <= box.last_u; ++x) {
-        std::int64_t old = __atomic_load_n(row + x, __ATOMIC_RELAXED);
-        while (by < old && !__atomic_compare_exchange_n(row + x, &old, by, true, __ATOMIC_RELAXED,
-                                                        __ATOMIC_RELAXED)) {
-        }
+        lowerTo(row + x, by);
       }
     }
   }

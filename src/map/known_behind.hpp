@@ -7,6 +7,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "lower_to.hpp"
+
 namespace pf {
 
 /// Where what a frame sees stands well before a surface that the map knows: something that came, or
@@ -24,12 +26,8 @@ class KnownBehind {
   /// The frame sees `depth_m` in pixel (u, v), and the map knows a surface behind. Threads may call
   /// it at once: the nearest of a cell stays.
   void mark(int u, int v, float depth_m) {
-    std::uint16_t* const cell = &cells_[at(u / kCell_px, v / kCell_px)];
-    const auto mm = static_cast<std::uint16_t>(std::min(1e3F * depth_m, kMost_mm));
-    std::uint16_t old = __atomic_load_n(cell, __ATOMIC_RELAXED);
-    while (mm < old &&
-           !__atomic_compare_exchange_n(cell, &old, mm, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-    }
+    const float mm = std::min(1e3F * depth_m, static_cast<float>(kNothing - 1));
+    lowerTo(&cells_[at(u / kCell_px, v / kCell_px)], static_cast<std::uint16_t>(mm));
   }
 
   /// Whether a surface is known behind `depth_m` in pixel (u, v), or behind what is seen around it
@@ -51,7 +49,6 @@ class KnownBehind {
   static constexpr int kCell_px = 4;
   static constexpr int kAround = 2;  // cells: holes of the map up to 16 pixels wide
   static constexpr std::uint16_t kNothing = 65535;
-  static constexpr float kMost_mm = 65534.0F;
 
   std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) +

@@ -13,18 +13,8 @@ constexpr double kMaxSteps = 4.0;  // of the last motion that the next one is pr
 
 /// The corners that lay on nothing that moves, by a mask of the frame before.
 SparseFlow withoutMasked(const SparseFlow& flow, const cv::Mat& mask) {
-  SparseFlow still;
-  still.from_ns = flow.from_ns;
-  still.to_ns = flow.to_ns;
-  for (std::size_t i = 0; i < flow.before.size(); ++i) {
-    const cv::Point at(cvRound(flow.before[i].x), cvRound(flow.before[i].y));
-    const bool inside = cv::Rect({}, mask.size()).contains(at);
-    if (inside && mask.at<std::uint8_t>(at) != 0) continue;
-    still.before.push_back(flow.before[i]);
-    still.after.push_back(flow.after[i]);
-    still.ids.push_back(flow.ids[i]);
-  }
-  return still;
+  return flow.only(
+      [&](const cv::Point2f& before, const cv::Point2f&) { return !isSet(mask, before); });
 }
 
 }  // namespace

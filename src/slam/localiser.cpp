@@ -71,12 +71,20 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   return location;
 }
 
-/// Whether the images prove an alignment as far as its verdict asks; while lost `prove` does it.
-bool Localiser::isProven(const WorkingFrame& frame, const TrackingResult& result,
-                         const Verdict& verdict, const MapRenderers& render) const {
-  if (verdict.proof == Proof::none || state_ == TrackingState::lost) return true;
-  const double needed = verdict.proof == Proof::likely ? 0.0 : logOdds(config_.sure_to_return);
-  return poseEvidence(frame, result, render.view(result.T_map_camera)).log_odds >= needed;
+/// Whether the images have to speak for an alignment. A blurred picture proves nothing, and is not
+/// fused; while lost `prove` asks for proof.
+bool Localiser::mustBeProven(const Attempt& attempt, bool forced) const {
+  return attempt.isBelieved() && !forced && attempt.verdict.proof != Proof::none &&
+         state_ != TrackingState::lost;
+}
+
+/// Whether they do as far as its verdict asks.
+bool Localiser::isProven(const WorkingFrame& frame, const Attempt& attempt,
+                         const MapRenderers& render) const {
+  const double needed =
+      attempt.verdict.proof == Proof::likely ? 0.0 : logOdds(config_.sure_to_return);
+  const ModelView& view = render.view(attempt.result.T_map_camera);
+  return poseEvidence(frame, attempt.result, view).log_odds >= needed;
 }
 
 Localiser::Attempt Localiser::alignFrom(const Eigen::Isometry3d& guess, bool firm,
@@ -86,9 +94,7 @@ Localiser::Attempt Localiser::alignFrom(const Eigen::Isometry3d& guess, bool fir
   const TrackingStart start{model.T_map_view, guess, prior, brightness_, firm, true};
   Attempt attempt{track(frame, model.points, start, config_), {}};
   attempt.verdict = judge(frame, attempt.result, prior, config_);
-  // A blurred picture proves nothing, and is not fused.
-  if (attempt.isBelieved() && !forced &&
-      !isProven(frame, attempt.result, attempt.verdict, render)) {
+  if (mustBeProven(attempt, forced) && !isProven(frame, attempt, render)) {
     attempt.verdict.outcome = prior.is_measured ? FrameOutcome::disagrees : FrameOutcome::jumped;
   }
   return attempt;
@@ -100,9 +106,6 @@ Localiser::Attempt Localiser::alignFrom(const Eigen::Isometry3d& guess, bool fir
 Localiser::Attempt Localiser::withoutSlip(const Attempt& found, const WorkingFrame& frame,
                                           const PosePrior& prior,
                                           const MapRenderers& render) const {
-  if (!found.isBelieved() || found.verdict.proof == Proof::none || state_ == TrackingState::lost) {
-    return found;
-  }
   const Eigen::Isometry3d& T_map_camera = found.result.T_map_camera;
   const SparseMotion left = motionFromView(frame, render.view(T_map_camera));
   if (!left.found || isWithin(left.T_before_after, kSamePose)) return found;
@@ -124,7 +127,7 @@ Localiser::Attempt Localiser::align(const WorkingFrame& frame, bool forced, cons
   }
   const auto attempt = [&](const Eigen::Isometry3d& guess, bool firm) {
     Attempt found = alignFrom(guess, firm, frame, forced, prior, render);
-    if (!forced) found = withoutSlip(found, frame, prior, render);
+    if (mustBeProven(found, forced)) found = withoutSlip(found, frame, prior, render);
     if (found.isBelieved() || best.result.candidates == 0) best = found;
     return found.isBelieved();
   };

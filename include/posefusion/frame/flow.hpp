@@ -27,7 +27,23 @@ struct SparseFlow {
   std::vector<std::uint32_t> ids;  ///< rising; a corner keeps its number while it is followed
 
   bool empty() const { return before.empty(); }
+
+  /// The corners of which keep(before, after) is true.
+  template <typename Keep>
+  SparseFlow only(const Keep& keep) const {
+    SparseFlow kept{from_ns, to_ns, {}, {}, {}};
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (!keep(before[i], after[i])) continue;
+      kept.before.push_back(before[i]);
+      kept.after.push_back(after[i]);
+      kept.ids.push_back(ids[i]);
+    }
+    return kept;
+  }
 };
+
+/// Whether a mask (CV_8UC1) is set at a pixel; false outside of it.
+bool isSet(const cv::Mat& mask, const cv::Point2f& pixel);
 
 /// Points followed from the last frame into the newest one.
 struct FollowedPoints {

@@ -160,7 +160,8 @@ class Localiser {
                     bool forced, const PosePrior& prior, const MapRenderers& render) const;
   Attempt withoutSlip(const Attempt& found, const WorkingFrame& frame, const PosePrior& prior,
                       const MapRenderers& render) const;
-  bool isProven(const WorkingFrame& frame, const TrackingResult& result, const Verdict& verdict,
+  bool mustBeProven(const Attempt& attempt, bool forced) const;
+  bool isProven(const WorkingFrame& frame, const Attempt& attempt,
                 const MapRenderers& render) const;
   void carry(const MotionPrior& step, bool is_known);
   bool isReckonedWell(const Location& location, const PosePrior& prior, double reckoned_s) const;
