@@ -23,6 +23,7 @@ class FastConvolution : public dnn::Layer {
                   const cv::Ptr<dnn::BaseConvolutionLayer>& convolution)
       : convolution_(convolution) {
     setParamsFrom(params);
+    type = "FastConvolution";  // from 4.7 on, OpenCV takes a "Convolution" for a layer of its own
   }
 
   bool getMemoryShapes(const std::vector<dnn::MatShape>& inputs, int outputs_needed,
