@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "graph_scene.hpp"
 
 namespace pf {
@@ -121,7 +123,7 @@ TEST(PoseGraphFragments, ReckoningIsKeptAcrossFilesAndHandOvers) {
   PoseGraph graph = reckonedPieces(truth, {50});
   PoseGraph copy = graph.handOver();
   graph.addFragment(keyframeAt(truth[40], 32, 2), between(loopOf(truth, 29, 40), 29, 32));
-  graph.takeUp(copy, {});
+  graph.takeUp(std::move(copy), {});
   EXPECT_EQ(graph.keptConstraints().size(), graph.constraints().size() + 2);
   PoseGraph again(graph.config(), graph.keyframes(), graph.keptConstraints(), graph.version());
   EXPECT_EQ(again.constraints().size(), graph.constraints().size());

@@ -48,7 +48,7 @@ PoseGraph PoseGraph::handOver() {
   return copy;
 }
 
-std::vector<Deformation> PoseGraph::takeUp(PoseGraph corrected,
+std::vector<Deformation> PoseGraph::takeUp(PoseGraph&& corrected,
                                            const std::vector<Deformation>& deformations) {
   const std::size_t known = corrected.keyframes_.size();
   const std::vector<int> parents =
@@ -80,7 +80,7 @@ std::vector<Deformation> PoseGraph::takeUp(PoseGraph corrected,
     if (added.to < static_cast<int>(known)) continue;
     if (const auto c = corrected.inUse(added)) corrected.reckoned_.push_back(*c);
   }
-  *this = std::move(corrected);
+  std::swap(*this, corrected);
   return followed;
 }
 

@@ -62,7 +62,10 @@ std::vector<int> PoseGraph::retire() {
   std::vector<int> retired;
   const int most = config_.keyframes_at_a_place;
   const auto isNear = [&](const Keyframe& a, const Keyframe& b) {
-    return a.id != b.id && !a.isRetired() && a.fragment == b.fragment &&
+    // Most pairs are far apart, which costs less to see than how they stand to each other.
+    const Eigen::Vector3d apart = a.T_map_camera.translation() - b.T_map_camera.translation();
+    return apart.norm() <= config_.keyframe_distance_m && a.id != b.id && !a.isRetired() &&
+           a.fragment == b.fragment &&
            isWithin(a.T_map_camera.inverse() * b.T_map_camera, config_.keyframe_distance_m,
                     config_.keyframe_angle_rad);
   };

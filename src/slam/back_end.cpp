@@ -74,7 +74,7 @@ void BackEnd::record(std::int64_t stamp_ns, const MapPose& pose) {
   frames_.push_back({stamp_ns, {last->id, last->T_map_camera.inverse() * pose.T_map_camera}});
 }
 
-std::vector<Deformation> BackEnd::takeUp(PoseGraph corrected, const ClosedLoops& closed) {
+std::vector<Deformation> BackEnd::takeUp(PoseGraph&& corrected, const ClosedLoops& closed) {
   counts_.accepted += closed.accepted;
   counts_.refused += closed.refused;
   counts_.joined += closed.joined;

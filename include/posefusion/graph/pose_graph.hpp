@@ -120,10 +120,10 @@ class PoseGraph {
   /// nothing but addKeyframe() and addLoop() may be called here.
   PoseGraph handOver();
 
-  /// The copy is corrected by these deformations, and takes its place. What was added here
-  /// meanwhile follows: a keyframe goes with the one that it was tracked from. Returns the
-  /// deformations with those keyframes in them.
-  std::vector<Deformation> takeUp(PoseGraph corrected,
+  /// The copy is corrected by these deformations, and takes the place of what is here, which is
+  /// left in the copy: any thread may free it. What was added here meanwhile follows: a keyframe
+  /// goes with the one that it was tracked from. Returns the deformations with those keyframes.
+  std::vector<Deformation> takeUp(PoseGraph&& corrected,
                                   const std::vector<Deformation>& deformations);
 
   Eigen::Isometry3d poseOf(const RelativePose& pose) const { return pf::poseOf(pose, keyframes_); }

@@ -66,7 +66,7 @@ class BackEnd {
 
   /// Takes the corrected graph up, and counts what became of its loops. Returns what the map is to
   /// follow, in this order.
-  std::vector<Deformation> takeUp(PoseGraph corrected, const ClosedLoops& closed);
+  std::vector<Deformation> takeUp(PoseGraph&& corrected, const ClosedLoops& closed);
 
   /// A step of tracking measured anew; see PoseGraph::retrack().
   Deformation retrack(const PoseConstraint& step);
