@@ -40,16 +40,17 @@ class Motions {
   Motions(const SurfelMap& map, const Deformation& deformation,
           const std::vector<std::uint32_t>& blocks) {
     for (const std::uint32_t number : blocks) {
-      const int fragment = map.blocks()[number].fragment;
-      const auto [first, is_new] = first_moved_.try_emplace(fragment, 0);
-      if (is_new) first->second = deformation.firstMoved(fragment);
+      const SurfelBlock& block = map.blocks()[number];
+      const auto [first, is_new] = first_moved_.try_emplace(block.fragment, 0);
+      if (is_new) first->second = deformation.firstMoved(block.fragment);
+      if (isOld(block)) continue;
+      for (const std::int32_t frame : block.surfels.created) {
+        const Origin origin(block.fragment, frame);
+        if (origins_.empty() || origins_.back() != origin) origins_.push_back(origin);
+      }
     }
-    std::vector<std::vector<Origin>> of_blocks(blocks.size());
-    parallelFor(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) of_blocks[k] = originsOf(map.blocks()[blocks[k]]);
-    });
-    for (const auto& some : of_blocks) origins_.insert(origins_.end(), some.begin(), some.end());
-    sortOut(origins_);
+    std::sort(origins_.begin(), origins_.end());
+    origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());
     motions_.resize(origins_.size(), RigidMotion(Eigen::Isometry3d::Identity()));
     moves_.resize(origins_.size(), 0);
     parallelFor(origins_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -92,23 +93,6 @@ class Motions {
   }
 
   using Origin = std::pair<int, std::int32_t>;  // fragment and frame
-
-  static void sortOut(std::vector<Origin>& origins) {
-    std::sort(origins.begin(), origins.end());
-    origins.erase(std::unique(origins.begin(), origins.end()), origins.end());
-  }
-
-  /// Of the surfels of a block, each once.
-  std::vector<Origin> originsOf(const SurfelBlock& block) const {
-    std::vector<Origin> origins;
-    if (isOld(block)) return origins;
-    for (const std::int32_t frame : block.surfels.created) {
-      const Origin origin(block.fragment, frame);
-      if (origins.empty() || origins.back() != origin) origins.push_back(origin);
-    }
-    sortOut(origins);
-    return origins;
-  }
 
   /// Where its motion is. `last`: of the surfel before, which mostly is of the same frame.
   std::size_t find(const Origin& origin, std::size_t last) const {
