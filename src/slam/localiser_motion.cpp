@@ -45,11 +45,20 @@ SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns
   if (flow.to_ns != stamp_ns) return {};
   const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
   const bool fused_before = trusted_ns_ == previous_.stamp_ns;
-  return estimateMotion(flow,
-                        {follows ? previous_.depth_m : cv::Mat(), frame.full_depth_m,
-                         follows && fused_before ? &view : nullptr, &landmarks_,
-                         previous_.T_map_camera, previous_.small.still, frame.sensor},
-                        frame.full_camera);
+  FlowScene scene{follows ? previous_.depth_m : cv::Mat(),
+                  frame.full_depth_m,
+                  follows && fused_before ? &view : nullptr,
+                  &landmarks_,
+                  previous_.T_map_camera,
+                  previous_.small.still,
+                  frame.sensor};
+  // Of two motions that corners beside people agree on, the steadier one is the camera's.
+  scene.expected = atConstantVelocity(secondsBetween(previous_.stamp_ns, stamp_ns));
+  return estimateMotion(flow, scene, frame.full_camera);
+}
+
+Eigen::Isometry3d Localiser::atConstantVelocity(double elapsed_s) const {
+  return expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
 }
 
 PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
@@ -58,7 +67,7 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
   if (step && step->has_shift) {
     expected = *step;
   } else {
-    expected.T_before_after = expSe3(previous_.velocity * std::min(elapsed_s, kMaxExtrapolation_s));
+    expected.T_before_after = atConstantVelocity(elapsed_s);
     expected.covariance = independentCovariance(kFreeShift_m + kRobotSpeed_m_s * elapsed_s,
                                                 kFreeAngle_rad + kRobotTurn_rad_s * elapsed_s);
     if (step) expected = combined(expected, *step).value_or(expected);

@@ -146,6 +146,8 @@ class Localiser {
                    Location& location);
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView& view) const;
+  /// T_before_after as the camera moved before.
+  Eigen::Isometry3d atConstantVelocity(double elapsed_s) const;
   PosePrior predict(const Location& location, double elapsed_s) const;
   /// An alignment, and what is thought of it.
   struct Attempt {
