@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
+#include <random>
 #include <set>
 
 namespace pf {
@@ -23,6 +25,48 @@ void addWall(SurfelArrays& s, float z, int created, bool away = false, float fra
     s.odds.back() = frames * static_odds::kFrame;
     s.created.back() = created;
   }
+}
+
+/// Surfels of all sizes and ages around a plane, about as it is; a number is its colour.
+SurfelArrays scattered(int count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(0.0F, 0.6F), off(-0.08F, 0.08F), tilt(-0.7F, 0.7F),
+      part(0.0F, 1.0F);
+  SurfelArrays s;
+  for (int k = 0; k < count; ++k) {
+    s.forEachArray([](auto& array) { array.push_back(0); });
+    s.x.back() = place(random);
+    s.y.back() = place(random);
+    s.z.back() = 2.0F + 0.3F * s.x.back() + off(random);
+    const Eigen::Vector3f n = Eigen::Vector3f(tilt(random), tilt(random), -1).normalized();
+    s.nx.back() = n.x();
+    s.ny.back() = n.y();
+    s.nz.back() = n.z();
+    s.radius.back() = 0.001F * std::pow(60.0F, part(random));
+    s.odds.back() = 20 * static_odds::kFrame;
+    s.created.back() = static_cast<int>(1000 * part(random));
+    s.r.back() = static_cast<float>(k);
+  }
+  return s;
+}
+
+/// Of each pair of surfels it is asked whether the one is a layer of the other.
+std::multiset<float> leftByComparingAll(const SurfelArrays& s) {
+  std::multiset<float> left;
+  const auto placeOf = [&](std::size_t i) { return Eigen::Vector3f(s.x[i], s.y[i], s.z[i]); };
+  const auto normalOf = [&](std::size_t i) { return Eigen::Vector3f(s.nx[i], s.ny[i], s.nz[i]); };
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    bool goes = false;
+    for (std::size_t k = 0; k < s.size() && !goes; ++k) {
+      const float cosine = normalOf(k).dot(normalOf(i));
+      const float at = normalOf(k).dot(placeOf(k) - placeOf(i)) / cosine;
+      const float beside = (placeOf(i) + at * normalOf(i) - placeOf(k)).norm();
+      goes = s.created[k] < s.created[i] && cosine >= 0.8F && beside <= s.radius[k] &&
+             std::abs(at) >= kLeastLayer_m && std::abs(at) <= kMostLayer_m;
+    }
+    if (!goes) left.insert(s.r[i]);
+  }
+  return left;
 }
 
 /// The frames in which the surfels were made that stay.
@@ -114,6 +158,17 @@ TEST(Layers, OfOneFrameBothStay) {
   addWall(surfels, 2.0F, 10);
   addWall(surfels, 2.04F, 10);
   EXPECT_EQ(left(surfels).size(), surfels.size()) << "one frame saw both";
+}
+
+TEST(Layers, OfAllSizesNoneIsMissed) {
+  const SurfelArrays surfels = scattered(4000);
+  SurfelMap map{MapConfig{}};
+  map.restore({{kFirstFragment, surfels}}, 1000);
+  removeYoungerLayers(map);
+  const SurfelArrays all = map.collect();
+  EXPECT_GT(all.size(), 100U);
+  EXPECT_LT(all.size(), 3900U);
+  EXPECT_EQ(std::multiset<float>(all.r.begin(), all.r.end()), leftByComparingAll(surfels));
 }
 
 TEST(Layers, ThreadsDoNotMatter) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <set>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace {
 // What is closer is noise of one layer.
 constexpr float kSameFacing = 0.8F;  // cosine
 constexpr std::size_t kSurfelsAtOnce = 4096;
+constexpr float kSmallest_m = 0.004F;  // radius that all of the smallest discs may have
 
 /// Which blocks of a fragment layers are looked for in: those named, and those around them.
 class Region {
@@ -67,7 +69,6 @@ class StableSurfels {
         if (!map.isStable(s, i)) continue;
         places_.push_back({block, i});
         positions_.emplace_back(s.x[i], s.y[i], s.z[i]);
-        largest_radius_ = std::max(largest_radius_, s.radius[i]);
       }
     }
   }
@@ -77,12 +78,9 @@ class StableSurfels {
   };
   std::size_t size() const { return places_.size(); }
   const Place& place(std::size_t i) const { return places_[i]; }
-  const std::vector<Eigen::Vector3f>& positions() const { return positions_; }
-
-  /// What the line through surfel i along its normal meets within the distances of a layer.
-  Eigen::AlignedBox3f boxOf(std::size_t i) const {
-    return lineOf(i).box(kMostLayer_m, largest_radius_);
-  }
+  const Eigen::Vector3f& position(std::size_t i) const { return positions_[i]; }
+  float radius(std::size_t i) const { return surfelsOf(i).radius[places_[i].slot]; }
+  NormalLine lineOf(std::size_t i) const { return {positions_[i], normalOf(i)}; }
 
   /// Whether i is a layer of the older k, one of them in a block that is asked about.
   bool isYoungerLayer(std::size_t i, std::size_t k) const {
@@ -106,25 +104,84 @@ class StableSurfels {
     const std::uint32_t slot = places_[i].slot;
     return {s.nx[slot], s.ny[slot], s.nz[slot]};
   }
-  NormalLine lineOf(std::size_t i) const { return {positions_[i], normalOf(i)}; }
 
   const SurfelMap& map_;
   const std::vector<char>& named_;
   std::vector<Place> places_;
   std::vector<Eigen::Vector3f> positions_;
-  float largest_radius_ = 0;
+};
+
+/// Those with discs of about one size, by place: a few large ones, far away, would have all be
+/// looked for at their distance.
+class Discs {
+ public:
+  Discs(const StableSurfels& stable, float from_radius, float to_radius)
+      : reach_(to_radius),
+        members_(membersOf(stable, from_radius, to_radius)),
+        positions_(positionsOf(stable, members_)),
+        grid_(positions_, kCellRadii * to_radius) {}
+
+  /// Whether found(k) is true for a disc that a line may meet where layers are.
+  template <typename Found>
+  bool anyOnLine(const NormalLine& line, const Found& found) const {
+    if (members_.empty()) return false;
+    bool any = false;
+    const float step = kCellRadii * reach_;
+    for (float begin = kLeastLayer_m; begin < kMostLayer_m && !any; begin += step) {
+      const float end = std::min(begin + step, kMostLayer_m);
+      for (const float side : {-1.0F, 1.0F}) {
+        grid_.visit(line.box(side * begin, side * end, reach_),
+                    [&](std::size_t k) { any = any || found(members_[k]); });
+      }
+    }
+    return any;
+  }
+
+ private:
+  static constexpr float kCellRadii = 4.0F;
+
+  static std::vector<std::uint32_t> membersOf(const StableSurfels& stable, float from_radius,
+                                              float to_radius) {
+    std::vector<std::uint32_t> members;
+    for (std::size_t i = 0; i < stable.size(); ++i) {
+      const float radius = stable.radius(i);
+      if (radius > from_radius && radius <= to_radius) {
+        members.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    return members;
+  }
+  static std::vector<Eigen::Vector3f> positionsOf(const StableSurfels& stable,
+                                                  const std::vector<std::uint32_t>& members) {
+    std::vector<Eigen::Vector3f> positions;
+    positions.reserve(members.size());
+    for (const std::uint32_t i : members) positions.push_back(stable.position(i));
+    return positions;
+  }
+
+  float reach_;
+  std::vector<std::uint32_t> members_;  ///< numbers in StableSurfels
+  std::vector<Eigen::Vector3f> positions_;
+  PointGrid grid_;
 };
 
 /// Marks those of a region that are to go. `first`: of each block's surfels among all of the map.
 void findYoungerLayers(const StableSurfels& stable, const std::vector<std::size_t>& first,
                        std::vector<char>& doomed) {
-  const PointGrid grid(stable.positions());
+  float largest = 0;
+  for (std::size_t i = 0; i < stable.size(); ++i) largest = std::max(largest, stable.radius(i));
+  std::deque<Discs> sizes;
+  for (float from = 0, to = kSmallest_m; from < largest; from = to, to *= 2) {
+    sizes.emplace_back(stable, from, to);
+  }
   parallelFor(stable.size(), kSurfelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      char& gone = doomed[first[stable.place(i).block] + stable.place(i).slot];
-      grid.visit(stable.boxOf(i), [&](std::size_t k) {
-        if (gone == 0) gone = stable.isYoungerLayer(i, k);
-      });
+      const NormalLine line = stable.lineOf(i);
+      doomed[first[stable.place(i).block] + stable.place(i).slot] =
+          std::any_of(sizes.begin(), sizes.end(), [&](const Discs& discs) {
+            return discs.anyOnLine(line,
+                                   [&](std::size_t k) { return stable.isYoungerLayer(i, k); });
+          });
     }
   });
 }

@@ -10,10 +10,12 @@ struct NormalLine {
   Eigen::Vector3f from, along;
 
   /// Around the line this far both ways, and so much more.
-  Eigen::AlignedBox3f box(float length, float margin) const {
-    Eigen::AlignedBox3f box(from);
-    box.extend(from + length * along);
-    box.extend(from - length * along);
+  Eigen::AlignedBox3f box(float length, float margin) const { return box(-length, length, margin); }
+
+  /// Around a part of the line, and so much more.
+  Eigen::AlignedBox3f box(float begin, float end, float margin) const {
+    Eigen::AlignedBox3f box(Eigen::Vector3f(from + begin * along));
+    box.extend(from + end * along);
     return {box.min() - Eigen::Vector3f::Constant(margin),
             box.max() + Eigen::Vector3f::Constant(margin)};
   }

@@ -15,8 +15,8 @@ namespace pf {
 class PointGrid {
  public:
   /// The points, which must outlive this, have coordinates below 10 km.
-  explicit PointGrid(const std::vector<Eigen::Vector3f>& points)
-      : points_(points), order_(points.size()) {
+  explicit PointGrid(const std::vector<Eigen::Vector3f>& points, float cell_m = 0.05F)
+      : points_(points), cell_m_(cell_m), order_(points.size()) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       keyed[i] = {keyOf(cellOf(points[i])), static_cast<std::uint32_t>(i)};
@@ -48,9 +48,8 @@ class PointGrid {
   const Eigen::Vector3f& operator[](std::size_t i) const { return points_[i]; }
 
  private:
-  static constexpr float kCell_m = 0.05F;
-  static Eigen::Vector3i cellOf(const Eigen::Vector3f& p) {
-    return (p / kCell_m).array().floor().cast<int>();
+  Eigen::Vector3i cellOf(const Eigen::Vector3f& p) const {
+    return (p / cell_m_).array().floor().cast<int>();
   }
   static std::uint64_t keyOf(const Eigen::Vector3i& cell) {
     constexpr std::uint64_t kBits = 21, kMask = (1U << kBits) - 1;  // 100 km of cells
@@ -60,6 +59,7 @@ class PointGrid {
   }
 
   const std::vector<Eigen::Vector3f>& points_;
+  float cell_m_;
   std::vector<std::uint32_t> order_;
   std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> cells_;
 };
