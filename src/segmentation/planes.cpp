@@ -38,13 +38,6 @@ struct Moments {
   double square = 0;
   double count = 0;
 
-  void add(double u, double v, double w) {
-    const Eigen::Vector3d q(u, v, 1.0);
-    A += q * q.transpose();
-    b += q * w;
-    square += w * w;
-    count += 1;
-  }
   Moments& operator+=(const Moments& other) {
     A += other.A;
     b += other.b;
@@ -71,18 +64,21 @@ struct PlaneFinder::State {
   PlaneLimits limits = kLarge;
   int cols = 0, rows = 0;  ///< of patches
   std::vector<Patch> patches;
-  std::vector<float> inverse_depth;  ///< of cells, 0 = none
-  std::vector<int> order;            ///< patches, flattest first
-  std::vector<std::uint8_t> taken;   ///< patches that belong to a region
-  std::vector<int> members;          ///< patches of the region that grows
-  Eigen::Vector3d plane;             ///< its plane
+  std::vector<float> inverse_depth;   ///< of cells, 0 = none
+  std::vector<int> order;             ///< patches, flattest first
+  std::vector<std::uint8_t> taken;    ///< patches that belong to a region
+  std::vector<int> members;           ///< patches of the region that grows
+  Eigen::Vector3d plane;              ///< its plane
+  std::vector<std::uint8_t> is_near;  ///< patches of the region and around it, see mark()
 
   void fitPatches(const SceneGrid& grid);
+  Moments momentsOf(const cv::Rect& cells, int grid_cols) const;
   void fitPatch(const SceneGrid& grid, int index);
   void growRegion(int start);
   bool isPlane(const SceneGrid& grid) const;
-  void mark(const SceneGrid& grid, int index, Flatness flatness,
-            std::vector<Flatness>& result) const;
+  void mark(const SceneGrid& grid, Flatness flatness, std::vector<Flatness>& result);
+  void markPatch(const SceneGrid& grid, int index, Flatness flatness,
+                 std::vector<Flatness>& result) const;
   void find(const SceneGrid& grid, const PlaneLimits& wanted, Flatness flatness,
             std::vector<Flatness>& result);
 };
@@ -90,15 +86,39 @@ struct PlaneFinder::State {
 PlaneFinder::PlaneFinder() : state_(std::make_unique<State>()) {}
 PlaneFinder::~PlaneFinder() = default;
 
+/// Of the cells that have depth.
+Moments PlaneFinder::State::momentsOf(const cv::Rect& cells, int grid_cols) const {
+  int count = 0, u_1 = 0, v_1 = 0, u_u = 0, u_v = 0, v_v = 0;
+  double u_w = 0, v_w = 0, sum = 0, square = 0;
+  for (int v = cells.y; v < cells.br().y; ++v) {
+    const float* row = &inverse_depth[v * grid_cols];
+    for (int u = cells.x; u < cells.br().x; ++u) {
+      const double w = row[u];
+      if (!(w > 0)) continue;
+      ++count;
+      u_1 += u;
+      v_1 += v;
+      u_u += u * u;
+      u_v += u * v;
+      v_v += v * v;
+      u_w += u * w;
+      v_w += v * w;
+      sum += w;
+      square += w * w;
+    }
+  }
+  Moments moments;
+  moments.A << u_u, u_v, u_1, u_v, v_v, v_1, u_1, v_1, count;
+  moments.b << u_w, v_w, sum;
+  moments.square = square;
+  moments.count = count;
+  return moments;
+}
+
 void PlaneFinder::State::fitPatch(const SceneGrid& grid, int index) {
   Patch& patch = patches[index];
   const int u0 = index % cols * limits.patch, v0 = index / cols * limits.patch;
-  for (int v = v0; v < v0 + limits.patch; ++v) {
-    for (int u = u0; u < u0 + limits.patch; ++u) {
-      const float w = inverse_depth[v * grid.cols + u];
-      if (w > 0.0F) patch.moments.add(u, v, w);
-    }
-  }
+  patch.moments = momentsOf(cv::Rect(u0, v0, limits.patch, limits.patch), grid.cols);
   if (patch.moments.count < kMinFilled * limits.patch * limits.patch) return;
   const Eigen::Vector3d fit = patch.moments.plane();
   patch.centre = {u0 + 0.5 * (limits.patch - 1), v0 + 0.5 * (limits.patch - 1), 1.0};
@@ -163,16 +183,27 @@ bool PlaneFinder::State::isPlane(const SceneGrid& grid) const {
          sum.rms(plane) < limits.max_error;
 }
 
-/// Marks the cells of the plane in a patch and in the ring around it: the border patches of a
-/// region mix two surfaces and did not join.
-void PlaneFinder::State::mark(const SceneGrid& grid, int index, Flatness flatness,
-                              std::vector<Flatness>& result) const {
-  const int u0 = std::max(0, (index % cols - 1) * limits.patch);
-  const int v0 = std::max(0, (index / cols - 1) * limits.patch);
-  const int u1 = std::min(grid.cols, (index % cols + 2) * limits.patch);
-  const int v1 = std::min(grid.rows, (index / cols + 2) * limits.patch);
-  for (int v = v0; v < v1; ++v) {
-    for (int u = u0; u < u1; ++u) {
+/// Marks the cells of the plane in the patches of its region and in those around them: the border
+/// patches of a region mix two surfaces and did not join.
+void PlaneFinder::State::mark(const SceneGrid& grid, Flatness flatness,
+                              std::vector<Flatness>& result) {
+  const cv::Size size(cols + 1, rows + 1);  // the last ones have what is left of the grid
+  is_near.assign(size.area(), 0);
+  for (int index : members) {
+    const cv::Point at(index % cols, index / cols);
+    const cv::Rect around = cv::Rect(at.x - 1, at.y - 1, 3, 3) & cv::Rect({0, 0}, size);
+    cv::Mat(size, CV_8UC1, is_near.data())(around).setTo(1);
+  }
+  for (int index = 0; index < size.area(); ++index) {
+    if (is_near[index] != 0) markPatch(grid, index, flatness, result);
+  }
+}
+
+void PlaneFinder::State::markPatch(const SceneGrid& grid, int index, Flatness flatness,
+                                   std::vector<Flatness>& result) const {
+  const int u0 = index % (cols + 1) * limits.patch, v0 = index / (cols + 1) * limits.patch;
+  for (int v = v0; v < std::min(grid.rows, v0 + limits.patch); ++v) {
+    for (int u = u0; u < std::min(grid.cols, u0 + limits.patch); ++u) {
       const int cell = v * grid.cols + u;
       const double predicted = plane.x() * u + plane.y() * v + plane.z();
       if (inverse_depth[cell] > 0.0F &&
@@ -190,8 +221,7 @@ void PlaneFinder::State::find(const SceneGrid& grid, const PlaneLimits& wanted, 
   for (int start : order) {
     if (taken[start] != 0 || patches[start].error > kMaxPatchError) continue;
     growRegion(start);
-    if (!isPlane(grid)) continue;
-    for (int index : members) mark(grid, index, flatness, result);
+    if (isPlane(grid)) mark(grid, flatness, result);
   }
 }
 
