@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "building.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/stamps.hpp"
 #include "posefusion/core/stopwatch.hpp"
@@ -24,8 +25,6 @@
 namespace pf {
 namespace {
 
-constexpr int kRooms = 9;  // copies in a row
-constexpr double kBetweenRooms_m = 0.5;
 constexpr double kOff_m = 0.05;  // more than any loop is off: all loops are worth a correction
 constexpr double kFrame_s = 1.0 / 30;
 
@@ -42,99 +41,10 @@ Config configFor(const Options& options) {
   return config;
 }
 
-/// A map of one room, and the poses of all its frames.
-struct Room {
-  SavedMap saved;
-  SurfelArrays stable;
-  Trajectory poses;
-  Eigen::Vector3d size_m;
-};
-
-Room mapped(const std::vector<RgbdFrame>& frames, const Config& config) {
-  Mapper mapper(config);
-  FlowTracker flow;
-  for (const RgbdFrame& frame : frames) {
-    mapper.process({frame, cv::Mat(), flow.advance(frame)});
-    mapper.takeQuestion();
-  }
-  Room room;
-  room.saved = mapper.saved(frames.back().camera);
-  room.poses = mapper.backEnd().trajectory();
-  Eigen::AlignedBox3f bounds;
-  mapper.map().forEachSurfel([&](const SurfelArrays& s, std::size_t i) {
-    const auto index = static_cast<std::uint32_t>(i);
-    if (!mapper.map().isStable(s, i)) return;
-    room.stable.append(s, &index, 1);
-    bounds.extend(Eigen::Vector3f(s.x[i], s.y[i], s.z[i]));
-  });
-  if (room.stable.size() == 0) throw InputError("the recording gives no stable surfels");
-  room.size_m = bounds.sizes().cast<double>().array() + kBetweenRooms_m;
-  return room;
-}
-
-/// Where copy `number` of `count` stands; the last stands where the room is.
-Eigen::Vector3d placeOf(int number, int count, const Eigen::Vector3d& size_m) {
-  const int from_last = count - 1 - number;
-  return {size_m.x() * (from_last % kRooms), 0, -size_m.z() * (from_last / kRooms)};
-}
-
-void addSurfels(const Room& room, const Eigen::Vector3d& at, int first_frame, SurfelArrays& all) {
-  const std::size_t begin = all.size();
-  all.append(room.stable);
-  for (std::size_t i = begin; i < all.size(); ++i) {
-    all.x[i] += static_cast<float>(at.x());
-    all.z[i] += static_cast<float>(at.z());
-    all.created[i] += first_frame;
-    all.seen[i] += first_frame;
-  }
-}
-
-void addKeyframes(const Room& room, const Eigen::Vector3d& at, int first_frame, std::size_t count,
-                  SavedMap& map) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t frame = k * room.poses.size() / count;
-    Keyframe keyframe;
-    keyframe.id = static_cast<int>(map.keyframes.size());
-    keyframe.map_frame = first_frame + static_cast<std::int32_t>(frame);
-    keyframe.stamp_ns = static_cast<std::int64_t>(keyframe.map_frame) * kSecond_ns / 30;
-    keyframe.T_map_camera = Eigen::Translation3d(at) * room.poses[frame].T_world_camera;
-    map.keyframes.push_back(keyframe);
-    if (keyframe.id == 0) continue;
-    PoseConstraint step;
-    step.kind = ConstraintKind::odometry;
-    step.from = keyframe.id - 1;
-    step.to = keyframe.id;
-    const Keyframe& before = map.keyframes[map.keyframes.size() - 2];
-    step.T_from_to = before.T_map_camera.inverse() * keyframe.T_map_camera;
-    step.covariance = 4e-4 * Matrix6d::Identity();
-    map.constraints.push_back(step);
-  }
-}
-
-SavedMap buildingOf(const Room& room, const Options& options) {
-  SavedMap map = room.saved;
-  map.keyframes.clear();
-  map.constraints.clear();
-  map.frames.clear();
-  map.views.clear();
-  const auto copies =
-      static_cast<int>(std::max<std::size_t>(1, options.surfels / room.stable.size()));
-  SurfelArrays all;
-  for (int n = 0; n < copies; ++n) {
-    const Eigen::Vector3d at = placeOf(n, copies, room.size_m);
-    const int first_frame = n * (room.saved.frame + 1);
-    addSurfels(room, at, first_frame, all);
-    addKeyframes(room, at, first_frame, options.keyframes / static_cast<std::size_t>(copies), map);
-  }
-  map.surfels = {{kFirstFragment, std::move(all)}};
-  map.frame = copies * (room.saved.frame + 1) - 1;
-  return map;
-}
-
 /// The camera of the recording, whose pose is given once.
 class Walk {
  public:
-  Walk(const std::vector<RgbdFrame>& frames, const Room& room, Mapper& mapper)
+  Walk(const std::vector<RgbdFrame>& frames, const MappedRoom& room, Mapper& mapper)
       : frames_(frames), room_(room), mapper_(mapper) {}
 
   /// Back and forth through the recording. Returns what mapping took (ms).
@@ -165,7 +75,7 @@ class Walk {
   }
 
   const std::vector<RgbdFrame>& frames_;
-  const Room& room_;
+  const MappedRoom& room_;
   Mapper& mapper_;
   FlowTracker flow_;
   std::size_t number_ = 0;
@@ -185,31 +95,57 @@ LoopAnswer loopBending(const Mapper& mapper, int turn) {
 
 struct Measured {
   std::vector<double> idle_ms, taken_ms, prepared_s;
+  int without = 0;  ///< loops that were refused, or only confirmed what is there
 };
 
-/// Frames at the pace of the camera, as live; what corrections are prepared in is beside.
+/// What has become of the loops so far.
+struct Progress {
+  int version;
+  std::size_t refused, loops;
+
+  explicit Progress(const BackEnd& back_end)
+      : version(back_end.graph().version()), refused(back_end.counts().refused) {
+    const auto& all = back_end.graph().constraints();
+    loops = static_cast<std::size_t>(std::count_if(
+        all.begin(), all.end(), [](const auto& c) { return c.kind == ConstraintKind::loop; }));
+  }
+  bool operator==(const Progress& o) const {
+    return version == o.version && refused == o.refused && loops == o.loops;
+  }
+};
+
+/// Frames at the pace of the camera, as live, until the loop that was reported has been decided on;
+/// what corrections are prepared in is beside.
+void decide(Walk& walk, Mapper& mapper, LoopThread& loops, Measured& measured) {
+  const Progress before(mapper.backEnd());
+  Stopwatch since;
+  double waited_s = 0;
+  while (Progress(mapper.backEnd()) == before) {
+    if (waited_s > 60) throw InputError("a loop was not decided on within a minute");
+    const double mapping_ms = walk.step();
+    mapper.takeQuestion();
+    Stopwatch watch;
+    loops.serve(mapper);
+    const double ms = watch.lapMs();
+    waited_s += 1e-3 * since.lapMs();
+    if (mapper.backEnd().graph().version() != before.version) {
+      measured.taken_ms.push_back(ms);
+      measured.prepared_s.push_back(waited_s);
+      return;
+    }
+    measured.idle_ms.push_back(ms);
+    std::this_thread::sleep_for(std::chrono::duration<double>(kFrame_s - 1e-3 * (mapping_ms + ms)));
+  }
+  ++measured.without;
+}
+
 Measured correct(Walk& walk, Mapper& mapper, const Options& options, const Config& config) {
   LoopThread loops(config, AnswerTime::when_ready);
   Measured measured;
-  for (int turn = 0; turn < options.corrections; ++turn) {
+  for (int turn = 0; static_cast<int>(measured.taken_ms.size()) < options.corrections; ++turn) {
+    if (measured.without > 2 * options.corrections) throw InputError("most loops correct nothing");
     mapper.take(loopBending(mapper, turn));
-    const int version = mapper.backEnd().graph().version();
-    Stopwatch since;
-    double waited_s = 0;
-    while (mapper.backEnd().graph().version() == version) {
-      const double mapping_ms = walk.step();
-      mapper.takeQuestion();
-      Stopwatch watch;
-      loops.serve(mapper);
-      const double ms = watch.lapMs();
-      const bool is_taken = mapper.backEnd().graph().version() != version;
-      (is_taken ? measured.taken_ms : measured.idle_ms).push_back(ms);
-      const std::chrono::duration<double> rest(kFrame_s - 1e-3 * (mapping_ms + ms));
-      if (!is_taken) std::this_thread::sleep_for(rest);
-      waited_s += 1e-3 * since.lapMs();
-      if (waited_s > 60) throw InputError("a correction was not accepted within a minute");
-    }
-    measured.prepared_s.push_back(waited_s);
+    decide(walk, mapper, loops, measured);
     for (int i = 0; i < 30; ++i) walk.step();
   }
   loops.finish(mapper);
@@ -219,9 +155,9 @@ Measured correct(Walk& walk, Mapper& mapper, const Options& options, const Confi
 int bigCorrection(const Options& options) {
   const Config config = configFor(options);
   const auto frames = readFrames(options.sequence, 60, options.frames);
-  const Room room = mapped(frames, config);
+  const MappedRoom room = mapRoom(frames, config);
   Mapper mapper(config);
-  mapper.load(buildingOf(room, options), MapUse::extend);
+  mapper.load(buildingOf(room, options.surfels, options.keyframes), MapUse::extend);
   Walk walk(frames, room, mapper);
   for (int i = 0; i < 60; ++i) walk.step();
   if (!walk.isTracked()) throw InputError("the camera was not found in the building");
@@ -234,6 +170,7 @@ int bigCorrection(const Options& options) {
       {"surfels", surfels},
       {"keyframes", keyframes},
       {"corrections", measured.taken_ms.size()},
+      {"loops_without_correction", measured.without},
       {"on_the_tracking_thread_ms", {{"median", taken.median}, {"most", taken.max}}},
       {"while_one_is_prepared_ms", {{"median", idle.median}, {"most", idle.max}}},
       {"until_taken_in_s",
