@@ -38,11 +38,7 @@ TEST(DepthField, givesTheDerivativesOfItsWeights) {
   const DepthField field = test::roomField();
   const double x = 0.413, y = 0.777, h = 1e-6;
   const FieldWeights w = field.weights(x, y);
-  double by_x = 0, by_y = 0;
-  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
-    by_x += w.by_x[k] * field.nodes()[static_cast<std::size_t>(w.node[k])];
-    by_y += w.by_y[k] * field.nodes()[static_cast<std::size_t>(w.node[k])];
-  }
+  const auto [by_x, by_y] = field.slopeAt(w);
   EXPECT_NEAR(by_x, (field.at(x + h, y) - field.at(x - h, y)) / (2 * h), 1e-9);
   EXPECT_NEAR(by_y, (field.at(x, y + h) - field.at(x, y - h)) / (2 * h), 1e-9);
 }

@@ -54,9 +54,9 @@ TEST(PairResidual, hasTheDerivativesThatDifferencesGive) {
       EXPECT_NEAR(r->by_pose[k], (at(field, x)->e - at(field, -x)->e) / (2 * h), 1e-5);
     }
     Eigen::VectorXd by_node = Eigen::VectorXd::Zero(static_cast<int>(field.nodes().size()));
-    for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
-      by_node[r->at_from.node[k]] += r->by_from * r->at_from.weight[k];
-      by_node[r->at_to.node[k]] += r->by_to * r->at_to.weight[k];
+    for (int k = 0; k < FieldWeights::kNodes; ++k) {
+      by_node[r->at_from.node(k)] += r->by_from * r->at_from.weight(k);
+      by_node[r->at_to.node(k)] += r->by_to * r->at_to.weight(k);
     }
     for (int n = 0; n < by_node.size(); ++n) {
       const auto with = [&](double step) {

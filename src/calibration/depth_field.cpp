@@ -2,6 +2,7 @@
 #include "posefusion/calibration/depth_field.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -57,6 +58,11 @@ Eigen::MatrixXd fitting(int count, int samples) {
 
 double squared(double x) { return x * x; }
 
+double alongRow(const std::array<double, 4>& weights, const double* nodes) {
+  return (weights[0] * nodes[0] + weights[1] * nodes[1]) +
+         (weights[2] * nodes[2] + weights[3] * nodes[3]);
+}
+
 }  // namespace
 
 DepthField::DepthField(int columns, int rows, std::vector<double> nodes_per_m)
@@ -79,24 +85,30 @@ std::size_t DepthField::nodeCount(int columns, int rows) {
 FieldWeights DepthField::weights(double x, double y) const {
   const Cubic c(x, columns_), r(y, rows_);
   FieldWeights w;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      const std::size_t k = 4 * i + j;
-      w.node[k] = (r.first + static_cast<int>(i)) * columns_ + c.first + static_cast<int>(j);
-      w.weight[k] = r.weight[i] * c.weight[j];
-      w.by_x[k] = r.weight[i] * c.slope[j];
-      w.by_y[k] = r.slope[i] * c.weight[j];
-    }
-  }
+  w.first = r.first * columns_ + c.first;
+  w.columns = columns_;
+  std::copy_n(c.weight, 4, w.across.begin());
+  std::copy_n(c.slope, 4, w.across_slope.begin());
+  std::copy_n(r.weight, 4, w.down.begin());
+  std::copy_n(r.slope, 4, w.down_slope.begin());
   return w;
 }
 
 double DepthField::at(const FieldWeights& w) const {
+  const double* row = &nodes_[static_cast<std::size_t>(w.first)];
   double sum = 0;
-  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
-    sum += w.weight[k] * nodes_[static_cast<std::size_t>(w.node[k])];
-  }
+  for (std::size_t i = 0; i < 4; ++i, row += columns_) sum += w.down[i] * alongRow(w.across, row);
   return sum;
+}
+
+std::array<double, 2> DepthField::slopeAt(const FieldWeights& w) const {
+  const double* row = &nodes_[static_cast<std::size_t>(w.first)];
+  std::array<double, 2> slope{};
+  for (std::size_t i = 0; i < 4; ++i, row += columns_) {
+    slope[0] += w.down[i] * alongRow(w.across_slope, row);
+    slope[1] += w.down_slope[i] * alongRow(w.across, row);
+  }
+  return slope;
 }
 
 double DepthField::at(double x, double y) const { return at(weights(x, y)); }

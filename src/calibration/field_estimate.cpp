@@ -63,9 +63,9 @@ double sigmaOf(const DepthField& field, const Eigen::MatrixXd& covariance) {
   for (int i = 0; i < kAcross * kDown; ++i) {
     const FieldWeights w =
         field.weights((i % kAcross + 0.5) / kAcross, (i / kAcross + 0.5) / kDown);
-    for (std::size_t a = 0; a < FieldWeights::kNodes; ++a) {
-      for (std::size_t b = 0; b < FieldWeights::kNodes; ++b) {
-        sum += w.weight[a] * w.weight[b] * covariance(w.node[a], w.node[b]);
+    for (int a = 0; a < FieldWeights::kNodes; ++a) {
+      for (int b = 0; b < FieldWeights::kNodes; ++b) {
+        sum += w.weight(a) * w.weight(b) * covariance(w.node(a), w.node(b));
       }
     }
   }

@@ -16,6 +16,9 @@ constexpr std::size_t kPairGrain = 16;
 /// A step of the field that is so small a part of what an uncalibrated camera has is the last.
 constexpr double kConverged = 0.002;
 
+/// Patches, of all pairs, that tell what the field leaves unexplained: half a percent sure.
+constexpr std::size_t kPatchesOfRest = 50000;
+
 /// Half of |x| of a standard normal variable is below it.
 constexpr double kMedianOfNormal = 0.6745;
 
@@ -49,10 +52,13 @@ void addPrior(const DepthField& found, const FieldEstimateConfig& config, FieldE
 /// of a normal distribution.
 double restOf(const std::vector<ViewPair>& pairs, const std::vector<ViewSurface>& surfaces,
               const DepthField& field, const PairModel& model, double most) {
+  PairModel some_patches = model;
+  some_patches.patches =
+      std::min(model.patches, std::max<std::size_t>(1, kPatchesOfRest / (2 * pairs.size() + 1)));
   std::vector<std::vector<Judged>> of_pair(pairs.size());
   parallelFor(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      of_pair[i] = residualsOf(pairs[i], surfaces, field, model);
+      of_pair[i] = residualsOf(pairs[i], surfaces, field, some_patches);
     }
   });
   std::size_t count = 0;

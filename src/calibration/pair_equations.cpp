@@ -2,8 +2,10 @@
 #include "posefusion/calibration/pair_equations.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+
+#include "posefusion/core/parallel.hpp"
 
 namespace pf {
 namespace {
@@ -39,21 +41,34 @@ Judged judged(const PairResidual& r) {
   return {r.e, r.variance, 1.0 + r.by_from * r.by_from, r.metres};
 }
 
+// Nodes in one row of a residual are three apart at most.
+constexpr int kBand = 8;
+
 /// Sums over the residuals of one pair.
 struct PairSums {
   Matrix6d P;
   Vector6d p;
   SixRows C;
-  // Of the field: with its mirror image, and the products of each node with itself.
-  Eigen::MatrixXd half;
-  Eigen::VectorXd squares;
+  // Of the field: products of nodes in different rows of a residual, with their mirror image, and
+  // of those in one: kBand / 2 below the node itself.
+  Eigen::MatrixXd half, band;
 
   explicit PairSums(Eigen::Index nodes)
       : P(Matrix6d::Zero()),
         p(Vector6d::Zero()),
         C(SixRows::Zero(6, nodes)),
         half(Eigen::MatrixXd::Zero(nodes, nodes)),
-        squares(Eigen::VectorXd::Zero(nodes)) {}
+        band(Eigen::MatrixXd::Zero(kBand, nodes)) {}
+
+  void addTo(Eigen::MatrixXd& H) const {
+    H += half + half.transpose();
+    for (Eigen::Index node = 0; node < band.cols(); ++node) {
+      for (Eigen::Index k = 0; k < kBand; ++k) {
+        const Eigen::Index other = node + k - kBand / 2;
+        if (other >= 0 && other < band.cols()) H(other, node) += band(k, node);
+      }
+    }
+  }
 };
 
 Vector6d slackInformation(const PairModel& model) {
@@ -64,36 +79,60 @@ Vector6d slackInformation(const PairModel& model) {
   return information;
 }
 
-/// The derivatives of a residual by the nodes (some twice) that it depends on.
-struct NodeRow {
-  static constexpr std::size_t kNodes = 2 * FieldWeights::kNodes;
-  std::array<Eigen::Index, kNodes> node;
-  std::array<double, kNodes> value;
+/// The derivatives of a residual by the nodes (some twice) that it depends on, in rows of four.
+struct NodeRows {
+  static constexpr int kRows = 8;
+  int first[kRows];  ///< node of each row
+  double value[4 * kRows];
 
-  explicit NodeRow(const PairResidual& r) {
-    for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
-      node[k] = r.at_from.node[k];
-      value[k] = r.by_from * r.at_from.weight[k];
-      node[k + FieldWeights::kNodes] = r.at_to.node[k];
-      value[k + FieldWeights::kNodes] = r.by_to * r.at_to.weight[k];
+  explicit NodeRows(const PairResidual& r) {
+    fill(r.at_from, r.by_from, 0);
+    fill(r.at_to, r.by_to, kRows / 2);
+  }
+
+ private:
+  void fill(const FieldWeights& w, double by, int row) {
+    for (int i = 0; i < 4; ++i) {
+      first[row + i] = w.node(4 * i);
+      for (int j = 0; j < 4; ++j) value[4 * (row + i) + j] = by * (w.down[i] * w.across[j]);
     }
   }
 };
 
+/// Where one residual is added to, of `nodes` nodes: see PairSums.
+struct NodeSums {
+  double *half, *band, *C, *g;
+  int nodes;
+};
+
+/// `weighted`: the derivatives by the pose, times the weight.
+POSEFUSION_SIMD_CLONES
+void addToNodes(const NodeRows& rows, double weight, double e, const double* __restrict weighted,
+                const NodeSums& sums) {
+  for (int b = 0; b < NodeRows::kRows; ++b) {
+    for (int i = 0; i < 4; ++i) {
+      const int node = rows.first[b] + i;
+      const double value = rows.value[4 * b + i], w = weight * value;
+      double* __restrict column = sums.half + static_cast<std::ptrdiff_t>(node) * sums.nodes;
+      for (int c = 0; c < b; ++c) {
+        for (int j = 0; j < 4; ++j) column[rows.first[c] + j] += w * rows.value[4 * c + j];
+      }
+      double* __restrict own = sums.band + kBand * node + kBand / 2 - i;
+      for (int j = 0; j < 4; ++j) own[j] += w * rows.value[4 * b + j];
+      for (int k = 0; k < 6; ++k) sums.C[6 * node + k] += weighted[k] * value;
+      sums.g[node] += w * e;
+    }
+  }
+}
+
 void addResidual(const PairResidual& r, const Vector6d& by_x, double weight, PairSums& pair,
                  Eigen::VectorXd& g) {
-  const NodeRow row(r);
   const Vector6d weighted = weight * by_x;
   pair.P.noalias() += weighted * by_x.transpose();
   pair.p += weighted * r.e;
-  for (std::size_t i = 0; i < NodeRow::kNodes; ++i) {
-    pair.C.col(row.node[i]) += weighted * row.value[i];
-    const double wi = weight * row.value[i];
-    g[row.node[i]] += wi * r.e;
-    double* column = pair.half.col(row.node[i]).data();
-    for (std::size_t j = 0; j < i; ++j) column[row.node[j]] += wi * row.value[j];
-    pair.squares[row.node[i]] += wi * row.value[i];
-  }
+  addToNodes(NodeRows(r), weight, r.e, weighted.data(),
+             {pair.half.data(), pair.band.data(), pair.C.data(), g.data(),
+              static_cast<int>(pair.half.cols())});
 }
 
 }  // namespace
@@ -144,8 +183,7 @@ void addPair(const ViewPair& pair, const std::vector<ViewSurface>& surfaces,
                  addResidual(r, by_x, judged(r).weight(model), sums, step.g);
                  ++equations.residuals;
                });
-  equations.H += sums.half + sums.half.transpose();
-  equations.H.diagonal() += sums.squares;
+  sums.addTo(equations.H);
   const Matrix6d W = slackInformation(model).asDiagonal();
   const Matrix6d P = sums.P + W;
   step.own = -solve(P, sums.p - W * c);

@@ -16,12 +16,8 @@ FieldWeights weightsOf(const DepthField& field, double u, double v, const Pinhol
 /// How d changes with the pixel.
 Eigen::RowVector2d slopeOf(const DepthField& field, const FieldWeights& w,
                            const PinholeCamera& camera) {
-  Eigen::RowVector2d slope(0, 0);
-  for (std::size_t k = 0; k < FieldWeights::kNodes; ++k) {
-    const double node = field.nodes()[static_cast<std::size_t>(w.node[k])];
-    slope += node * Eigen::RowVector2d(w.by_x[k] / camera.width, w.by_y[k] / camera.height);
-  }
-  return slope;
+  const auto slope = field.slopeAt(w);
+  return {slope[0] / camera.width, slope[1] / camera.height};
 }
 
 }  // namespace
@@ -40,8 +36,8 @@ std::optional<PairResidual> pairResidual(const SurfacePatch& patch, const ViewSu
   const Eigen::Vector2d pixel = camera.project(q);
   const SurfacePatch* other = to.near(pixel.x(), pixel.y());
   if (other == nullptr) return std::nullopt;
-  const Eigen::Vector3d normal = normalOf(*other, camera);
-  if ((T_to_from.linear() * normalOf(patch, from.camera())).dot(normal) < kFacing) {
+  const Eigen::Vector3d normal = other->normal.cast<double>();
+  if ((T_to_from.linear() * patch.normal.cast<double>()).dot(normal) < kFacing) {
     return std::nullopt;
   }
   r.pixel_u = pixel.x();

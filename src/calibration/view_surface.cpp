@@ -39,6 +39,13 @@ bool isInRange(const DepthSensor& sensor, double w) {
          z + kSigmasOfRange * sensor.sigma(static_cast<float>(z)) < sensor.max_depth_m;
 }
 
+Eigen::Vector3d normalOf(const SurfacePatch& p, const PinholeCamera& camera) {
+  // 1 = n . X / distance in rays: w = A + B x + C y with x, y on the plane z = 1.
+  const double B = p.by_u * camera.fx, C = p.by_v * camera.fy;
+  const double A = p.w - p.by_u * (p.u - camera.cx) - p.by_v * (p.v - camera.cy);
+  return -Eigen::Vector3d(B, C, A).normalized();
+}
+
 std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, int radius) {
   const cv::Mat& depth_mm = view.depth_mm;
   const PinholeCamera& camera = view.camera;
@@ -64,18 +71,13 @@ std::optional<SurfacePatch> fitPatch(const CalibrationView& view, int u, int v, 
   patch.by_v = static_cast<float>(fit->by_v);
   patch.sigma = static_cast<float>(sigma / std::sqrt(std::max(1.0, sums.count() * kIndependent)));
   const Eigen::Vector3d ray = camera.unproject(u, v, 1.0);
-  if (-normalOf(patch, camera).dot(ray) < kGrazing * ray.norm()) return std::nullopt;
+  const Eigen::Vector3d normal = normalOf(patch, camera);
+  if (-normal.dot(ray) < kGrazing * ray.norm()) return std::nullopt;
+  patch.normal = normal.cast<float>();
   return patch;
 }
 
 }  // namespace
-
-Eigen::Vector3d normalOf(const SurfacePatch& p, const PinholeCamera& camera) {
-  // 1 = n . X / distance in rays: w = A + B x + C y with x, y on the plane z = 1.
-  const double B = p.by_u * camera.fx, C = p.by_v * camera.fy;
-  const double A = p.w - p.by_u * (p.u - camera.cx) - p.by_v * (p.v - camera.cy);
-  return -Eigen::Vector3d(B, C, A).normalized();
-}
 
 ViewSurface::ViewSurface(const CalibrationView& view)
     : id_(view.id),

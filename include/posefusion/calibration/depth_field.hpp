@@ -8,13 +8,18 @@
 
 namespace pf {
 
-/// How much each node of a grid counts at a place in the image, and how that changes with the
-/// place.
+/// How much each node of a grid counts at a place in the image: those of four rows and columns, by
+/// the product of what both count.
 struct FieldWeights {
-  static constexpr std::size_t kNodes = 16;
-  std::array<int, kNodes> node{};  ///< indices, row by row
-  std::array<double, kNodes> weight{};
-  std::array<double, kNodes> by_x{}, by_y{};  ///< derivatives by x and y
+  static constexpr int kNodes = 16;
+  int first = 0, columns = 0;  ///< index of the first of them, and how far on the next row is
+  std::array<double, 4> across{}, down{};
+  std::array<double, 4> across_slope{}, down_slope{};  ///< derivatives by x and y
+
+  /// Of number k of them, row by row. @{
+  int node(int k) const { return first + k / 4 * columns + k % 4; }
+  double weight(int k) const { return down[k / 4] * across[k % 4]; }
+  /// @}
 };
 
 /// The smooth systematic error of a depth camera: 1/z_true = 1/z_measured + d(x, y), d in 1/m. To
@@ -43,6 +48,8 @@ class DepthField {
   double at(double x, double y) const;
   double at(const FieldWeights& weights) const;
   FieldWeights weights(double x, double y) const;
+  /// Derivatives of d by x and y.
+  std::array<double, 2> slopeAt(const FieldWeights& weights) const;
 
   /// z_true (m) of a measured depth; 0 where there is none.
   double corrected(double z_m, double x, double y) const;

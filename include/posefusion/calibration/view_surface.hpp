@@ -28,6 +28,7 @@ struct SurfacePatch {
   float w = 0;               ///< inverse depth there, as measured (1/m); 0: no patch
   float by_u = 0, by_v = 0;  ///< 1/m per pixel
   float sigma = 0;           ///< standard deviation of w (1/m), of the sensor's noise
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit (camera frame, towards the camera)
 };
 
 /// The smooth, not grazing surface in a view, as patches on a regular grid of about 80 columns,
@@ -59,8 +60,5 @@ class ViewSurface {
   std::vector<int> index_;  ///< of the patch of each cell; -1: none
   std::vector<SurfacePatch> patches_;
 };
-
-/// Unit normal (camera frame, towards the camera) of a plane in inverse depth.
-Eigen::Vector3d normalOf(const SurfacePatch& patch, const PinholeCamera& camera);
 
 }  // namespace pf
