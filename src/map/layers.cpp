@@ -56,8 +56,8 @@ class Region {
   float reach_ = 0;
 };
 
-/// The stable surfels of a region: where they are in space, and in the map. What else is asked of
-/// them is read there: beside mapping, a second copy of the map is memory enough.
+/// The stable surfels of a region: where they are in the map. What is asked of them is read there:
+/// beside mapping, a second copy of the map is memory enough.
 class StableSurfels {
  public:
   StableSurfels(const SurfelMap& map, const Region& region, const std::vector<char>& named)
@@ -66,9 +66,7 @@ class StableSurfels {
       if (!region.has(block)) continue;
       const SurfelArrays& s = map.blocks()[block].surfels;
       for (std::uint32_t i = 0; i < s.size(); ++i) {
-        if (!map.isStable(s, i)) continue;
-        places_.push_back({block, i});
-        positions_.emplace_back(s.x[i], s.y[i], s.z[i]);
+        if (map.isStable(s, i)) places_.push_back({block, i});
       }
     }
   }
@@ -78,9 +76,13 @@ class StableSurfels {
   };
   std::size_t size() const { return places_.size(); }
   const Place& place(std::size_t i) const { return places_[i]; }
-  const Eigen::Vector3f& position(std::size_t i) const { return positions_[i]; }
+  Eigen::Vector3f position(std::size_t i) const {
+    const SurfelArrays& s = surfelsOf(i);
+    const std::uint32_t slot = places_[i].slot;
+    return {s.x[slot], s.y[slot], s.z[slot]};
+  }
   float radius(std::size_t i) const { return surfelsOf(i).radius[places_[i].slot]; }
-  NormalLine lineOf(std::size_t i) const { return {positions_[i], normalOf(i)}; }
+  NormalLine lineOf(std::size_t i) const { return {position(i), normalOf(i)}; }
 
   /// Whether i is a layer of the older k, one of them in a block that is asked about.
   bool isYoungerLayer(std::size_t i, std::size_t k) const {
@@ -89,7 +91,7 @@ class StableSurfels {
     const std::uint32_t slot = places_[k].slot;
     if (other.created[slot] >= surfelsOf(i).created[places_[i].slot]) return false;
     float at = 0;
-    if (!lineOf(i).meets(positions_[k], normalOf(k), other.radius[slot], kSameFacing, at)) {
+    if (!lineOf(i).meets(position(k), normalOf(k), other.radius[slot], kSameFacing, at)) {
       return false;
     }
     return std::abs(at) >= kLeastLayer_m && std::abs(at) <= kMostLayer_m;
@@ -108,7 +110,6 @@ class StableSurfels {
   const SurfelMap& map_;
   const std::vector<char>& named_;
   std::vector<Place> places_;
-  std::vector<Eigen::Vector3f> positions_;
 };
 
 /// Those with discs of about one size, by place: a few large ones, far away, would have all be

@@ -99,17 +99,17 @@ struct Measured {
 };
 
 /// What has become of the loops so far.
-struct Progress {
+struct LoopsSoFar {
   int version;
   std::size_t refused, loops;
 
-  explicit Progress(const BackEnd& back_end)
+  explicit LoopsSoFar(const BackEnd& back_end)
       : version(back_end.graph().version()), refused(back_end.counts().refused) {
     const auto& all = back_end.graph().constraints();
     loops = static_cast<std::size_t>(std::count_if(
         all.begin(), all.end(), [](const auto& c) { return c.kind == ConstraintKind::loop; }));
   }
-  bool operator==(const Progress& o) const {
+  bool operator==(const LoopsSoFar& o) const {
     return version == o.version && refused == o.refused && loops == o.loops;
   }
 };
@@ -117,10 +117,10 @@ struct Progress {
 /// Frames at the pace of the camera, as live, until the loop that was reported has been decided on;
 /// what corrections are prepared in is beside.
 void decide(Walk& walk, Mapper& mapper, LoopThread& loops, Measured& measured) {
-  const Progress before(mapper.backEnd());
+  const LoopsSoFar before(mapper.backEnd());
   Stopwatch since;
   double waited_s = 0;
-  while (Progress(mapper.backEnd()) == before) {
+  while (LoopsSoFar(mapper.backEnd()) == before) {
     if (waited_s > 60) throw InputError("a loop was not decided on within a minute");
     const double mapping_ms = walk.step();
     mapper.takeQuestion();

@@ -14,7 +14,7 @@ namespace pf {
 /// Points in cells of space; finds those in a box. Threads may share it.
 class PointGrid {
  public:
-  /// The points, which must outlive this, have coordinates below 10 km.
+  /// The points, which must outlive this, have coordinates below 10 km; cells are 1 cm or more.
   explicit PointGrid(const std::vector<Eigen::Vector3f>& points, float cell_m = 0.05F)
       : points_(points), cell_m_(cell_m), order_(points.size()) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
@@ -52,7 +52,7 @@ class PointGrid {
     return (p / cell_m_).array().floor().cast<int>();
   }
   static std::uint64_t keyOf(const Eigen::Vector3i& cell) {
-    constexpr std::uint64_t kBits = 21, kMask = (1U << kBits) - 1;  // 100 km of cells
+    constexpr std::uint64_t kBits = 21, kMask = (1U << kBits) - 1;  // 10 km of 1 cm
     return (static_cast<std::uint64_t>(cell.x()) & kMask) << (2 * kBits) |
            (static_cast<std::uint64_t>(cell.y()) & kMask) << kBits |
            (static_cast<std::uint64_t>(cell.z()) & kMask);
