@@ -16,14 +16,11 @@ class LocaliserGapTest : public ::testing::Test {
  protected:
   /// So many frames; ends with the first that is rejected.
   Location look(int frames, const cv::Rect& gap) {
-    RgbdFrame frame{0, cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)),
-                    cv::Mat::zeros(120, 160, CV_32FC1), 1e-3, smallCamera()};
-    frame.depth(gap).setTo(2.0F);
-    frame_.assign(frame, cv::Mat(), fullResolution());
+    show(gap);
     fuseOften(20, frame_, map_);
     Location location = localiser_.begin(frame_, 0, {kFirstFragment, kIdentity});
     for (int i = 1; i <= frames && location.outcome == FrameOutcome::fused; ++i) {
-      location = see(i, gap);
+      location = see(last_ = i, gap);
     }
     return location;
   }
@@ -46,6 +43,14 @@ class LocaliserGapTest : public ::testing::Test {
                               [&](const Eigen::Isometry3d&) -> const ModelView& { return view_; }});
   }
 
+  /// The wall in this part of the picture, and nothing elsewhere.
+  void show(const cv::Rect& gap) {
+    RgbdFrame frame{0, cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)),
+                    cv::Mat::zeros(120, 160, CV_32FC1), 1e-3, smallCamera()};
+    frame.depth(gap).setTo(2.0F);
+    frame_.assign(frame, cv::Mat(), fullResolution());
+  }
+
   static constexpr int kCorners = 14, kFrames = 300;
   static constexpr std::int64_t kStep_ns = 33333333;
   SurfelMap map_{MapConfig()};
@@ -53,6 +58,7 @@ class LocaliserGapTest : public ::testing::Test {
   WorkingFrame frame_;
   ModelView view_;
   ModelPyramid points_;
+  int last_ = 0;  ///< frame
 };
 
 TEST_F(LocaliserGapTest, IsRejectedWhereItIsKnownByALongChainOfCornersAlone) {
@@ -76,6 +82,18 @@ TEST_F(LocaliserGapTest, OfTwoMotionsThatAsManyCornersShowTheSteadyOneIsBelieved
     ASSERT_TRUE(location.motion.found);
     EXPECT_LT(location.motion.T_before_after.translation().norm(), 0.005) << walk_px;
   }
+}
+
+TEST_F(LocaliserGapTest, TheWayThatALostCameraWasCarriedDoesNotTellItsPlace) {
+  const cv::Rect gap(40, 20, 70, 80);
+  Location location = look(kFrames, gap);
+  for (int i = 0; i < 60 && location.state != TrackingState::lost; ++i) {
+    location = see(++last_, gap);
+  }
+  const double before_m = positionSigma(location.tracking.covariance);
+  location = see(++last_, gap);
+  ASSERT_EQ(location.state, TrackingState::lost);
+  EXPECT_GT(positionSigma(location.tracking.covariance), 2 * before_m);
 }
 
 }  // namespace

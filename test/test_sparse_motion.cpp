@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 
 #include "small_camera.hpp"
@@ -60,7 +61,14 @@ class SparseMotionTest : public ::testing::Test {
   }
 
   SparseMotion estimate(const ModelView* view = nullptr) const {
-    return estimateMotion(flow_, {before_m_, after_m_, view}, camera_);
+    FlowScene scene{before_m_, after_m_, view};
+    scene.expected = expected_;
+    return estimateMotion(flow_, scene, camera_);
+  }
+
+  /// It is expected to go on for 1/30 s as it does, but for this twist.
+  void expect(const Vector6d& off) {
+    expected_ = steadyStep(T_before_after_ * expSe3(off), 1.0 / 30, 1.0 / 30);
   }
 
   Vector6d error(const SparseMotion& motion) const {
@@ -71,6 +79,7 @@ class SparseMotionTest : public ::testing::Test {
   Eigen::Isometry3d T_before_after_;
   cv::Mat before_m_, after_m_;
   SparseFlow flow_;
+  std::optional<ExpectedStep> expected_;
 };
 
 TEST_F(SparseMotionTest, IsExactForExactCorners) {
@@ -128,6 +137,51 @@ TEST_F(SparseMotionTest, CovarianceCoversTheError) {
         e.dot(motion.covariance.ldlt().solve(e)) < 20.0 ? 1 : 0;  // 6 degrees of freedom, 99.7 %
   }
   EXPECT_GE(covered, 18);
+}
+
+TEST_F(SparseMotionTest, OfFewCornersWhatIsExpectedLowersTheError) {
+  double with = 0, without = 0;
+  for (int run = 0; run < 20; ++run) {
+    flow_ = SparseFlow();
+    addCorners(16 + run, 0, 0.5);
+    Vector6d off;
+    off << 0.003, -0.002, 0.002, 0.001, 0.001, -0.002;
+    expected_.reset();
+    const SparseMotion alone = estimate();
+    expect(run % 2 == 0 ? off : Vector6d(-off));
+    const SparseMotion expected = estimate();
+    ASSERT_TRUE(alone.found && expected.found);
+    without += error(alone).squaredNorm();
+    with += error(expected).squaredNorm();
+  }
+  EXPECT_LT(with, 0.7 * without);
+}
+
+TEST_F(SparseMotionTest, WhatIsExpectedIsNoMeasurement) {
+  addCorners(40, 0, 0.0);
+  const SparseMotion alone = estimate();
+  expect(Vector6d::Zero());
+  const SparseMotion expected = estimate();
+  EXPECT_TRUE(expected.covariance.isApprox(alone.covariance, 0.01));
+}
+
+TEST_F(SparseMotionTest, ManyCornersOverruleWhatIsExpected) {
+  addCorners(80, 0, 0.0);
+  Vector6d blow;  // a robot hits the ground
+  blow << 0.1, -0.05, 0.02, 0.05, 0.1, 0.02;
+  expect(blow);
+  const SparseMotion motion = estimate();
+  EXPECT_EQ(motion.inliers, 80);
+  EXPECT_LT(error(motion).head<3>().norm(), 2e-3);
+}
+
+TEST_F(SparseMotionTest, OfTwoMotionsTheExpectedOneIsFoundThoughMoreCornersShowTheOther) {
+  addCorners(20, 24, 0.2);
+  EXPECT_GT(error(estimate()).norm(), 0.01) << "else this tests nothing";
+  Vector6d off;
+  off << 0.003, -0.002, 0.002, 0.001, 0.001, -0.002;
+  expect(off);
+  EXPECT_LT(error(estimate()).norm(), 0.01);
 }
 
 /// A person too near for the sensor's depth, before most of the wall; `twenty` corners of the wall

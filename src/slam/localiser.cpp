@@ -44,11 +44,14 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   Location location;
   pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
-  const PosePrior prior = expect(frame, stamp_ns, flow, view, told, location);
-  const Attempt aligned = align(frame, forced, prior, render);
+  const PosePrior prior =
+      expect(frame, stamp_ns, flow, viewBefore(view, render.view), told, location);
+  const bool was_lost = state_ == TrackingState::lost;
+  const Attempt aligned =
+      align(frame, forced, was_lost ? startAt(prior.T_map_camera) : prior, render);
   location.tracking = aligned.result;
   Verdict verdict = aligned.verdict;
-  if (verdict.outcome == FrameOutcome::fused) {
+  if (verdict.outcome == FrameOutcome::fused && !was_lost) {
     verdict = askFurther(frame, location, prior, {stamp_ns, forced}, render.view);
   }
   if (forced && verdict.outcome == FrameOutcome::fused) {
@@ -56,7 +59,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   }
   location.outcome = verdict.outcome;
   location.detail = verdict.detail;
-  if (state_ == TrackingState::lost) {
+  if (was_lost) {
     prove(frame, prior, location, render.view);
     if (location.is_return) trust(location, stamp_ns, elapsed_s);
   } else if (verdict.outcome == FrameOutcome::fused) {
@@ -156,6 +159,8 @@ void Localiser::trust(Location& location, std::int64_t stamp_ns, double elapsed_
   if (elapsed_s > 0) {
     previous_.velocity =
         logSe3(previous_.T_map_camera.inverse() * location.T_map_camera) / elapsed_s;
+    previous_.velocity_ns = location.motion.found ? stamp_ns : 0;
+    previous_.velocity_covariance = location.motion.covariance / (elapsed_s * elapsed_s);
   }
   ++frames_since_return_;
   previous_.T_map_camera = location.T_map_camera;

@@ -13,6 +13,12 @@ namespace {
 constexpr double kFreeShift_m = 0.02, kFreeAngle_rad = 0.02;
 constexpr double kMaxExtrapolation_s = 0.2;
 
+/// The covariance of what a robot may do where nothing measures it.
+Matrix6d ofFreeMotion(double elapsed_s) {
+  return independentCovariance(kFreeShift_m + kRobotSpeed_m_s * elapsed_s,
+                               kFreeAngle_rad + kRobotTurn_rad_s * elapsed_s);
+}
+
 /// Where the two contradict each other the pictures are believed: the map is made of them.
 std::optional<MotionPrior> stepOf(const SparseMotion& motion,
                                   const std::optional<MotionPrior>& told) {
@@ -24,7 +30,7 @@ std::optional<MotionPrior> stepOf(const SparseMotion& motion,
 }  // namespace
 
 PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
-                            const SparseFlow& flow, const ModelView& view,
+                            const SparseFlow& flow, const ModelView* view,
                             const std::optional<MotionPrior>& told, Location& location) {
   const double elapsed_s = secondsBetween(previous_.stamp_ns, stamp_ns);
   location.motion = measure(frame, stamp_ns, flow, view);
@@ -39,21 +45,31 @@ PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
   return prior;
 }
 
+/// The map where the frame before is believed to be; null: that is not known.
+const ModelView* Localiser::viewBefore(const ModelView& last, const ViewRenderer& render) const {
+  if (trusted_ns_ == previous_.stamp_ns) return &last;
+  const bool is_known = state_ != TrackingState::lost || belief_ > 0;
+  return is_known ? &render(previous_.T_map_camera) : nullptr;
+}
+
 /// By the corners that lead from the frame before.
 SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns,
-                                const SparseFlow& flow, const ModelView& view) const {
+                                const SparseFlow& flow, const ModelView* view) const {
   if (flow.to_ns != stamp_ns) return {};
   const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
-  const bool fused_before = trusted_ns_ == previous_.stamp_ns;
   FlowScene scene{follows ? previous_.depth_m : cv::Mat(),
                   frame.full_depth_m,
-                  follows && fused_before ? &view : nullptr,
+                  follows ? view : nullptr,
                   &landmarks_,
                   previous_.T_map_camera,
                   previous_.small.still,
                   frame.sensor};
-  // Of two motions that corners beside people agree on, the steadier one is the camera's.
-  scene.expected = atConstantVelocity(secondsBetween(previous_.stamp_ns, stamp_ns));
+  if (previous_.velocity_ns != 0) {
+    const double step_s = secondsBetween(previous_.stamp_ns, stamp_ns);
+    scene.expected = steadyStep(atConstantVelocity(step_s), step_s,
+                                secondsBetween(previous_.velocity_ns, stamp_ns));
+    scene.expected->covariance += step_s * step_s * previous_.velocity_covariance;
+  }
   return estimateMotion(flow, scene, frame.full_camera);
 }
 
@@ -68,8 +84,7 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
     expected = *step;
   } else {
     expected.T_before_after = atConstantVelocity(elapsed_s);
-    expected.covariance = independentCovariance(kFreeShift_m + kRobotSpeed_m_s * elapsed_s,
-                                                kFreeAngle_rad + kRobotTurn_rad_s * elapsed_s);
+    expected.covariance = ofFreeMotion(elapsed_s);
     if (step) expected = combined(expected, *step).value_or(expected);
   }
   PosePrior prior;
@@ -82,6 +97,10 @@ PosePrior Localiser::predict(const Location& location, double elapsed_s) const {
       location.has_odometry ? previous_.covariance_to_view : previous_.covariance;
   prior.covariance = propagated(A, before) + expected.covariance;
   return prior;
+}
+
+PosePrior Localiser::startAt(const Eigen::Isometry3d& T_map_camera) {
+  return {T_map_camera, ofFreeMotion(kMaxExtrapolation_s), false};
 }
 
 void Localiser::carry(const MotionPrior& step, bool is_known) {

@@ -67,7 +67,7 @@ Verdict Localiser::askFurther(const WorkingFrame& frame, const Location& locatio
   if (moment.forced) {
     const bool is_blind = !prior.is_measured && blind_s > kMaxBlind_s;
     const bool is_far = way.norm() > kMaxForcedWay_m;
-    if (state_ == TrackingState::lost || (!is_blind && !is_far)) return {};
+    if (!is_blind && !is_far) return {};
     return {FrameOutcome::disagrees, "blurred, and far from the last pose"};
   }
   const bool is_after_gap =
@@ -131,7 +131,7 @@ void Localiser::prove(const WorkingFrame& frame, const PosePrior& prior, Locatio
   const bool is_carried_on = belief_ > 0;
   previous_.T_map_camera = is_carried_on ? location.tracking.T_map_camera : prior.T_map_camera;
   previous_.covariance = is_carried_on ? location.tracking.covariance : prior.covariance;
-  previous_.velocity.setZero();
+  previous_.forgetVelocity();
   location.state = TrackingState::lost;
   location.fragment = located_.fragment;
   location.T_map_camera = located_.T_map_camera;
@@ -152,7 +152,7 @@ void Localiser::suggest(const PlaceVerdict& place, const Eigen::Isometry3d& T_re
   // As well as the place was known then; the way since is as good as alignments agree.
   previous_.covariance = propagated(adjoint(T_then_now.inverse()), place.alignment.covariance) +
                          covarianceOf(kSamePose);
-  previous_.velocity.setZero();
+  previous_.forgetVelocity();
   belief_ = confirmed;
   is_suggested_ = true;
 }

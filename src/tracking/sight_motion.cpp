@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posefusion/core/symmetric.hpp"
 #include "posefusion/frame/flow.hpp"
 
 namespace pf {
@@ -19,6 +20,9 @@ constexpr double kInlierSigmas = 4.0;
 constexpr double kNearest_m = 0.1;  // before the later camera
 // 1 / variance of SightMotion::far, of which anything from 0 to 2 is equally likely.
 constexpr double kFarInformation = 3.0;
+// Degrees of freedom of Student's t-distribution, by which a motion differs from the expected one:
+// mostly little, and seldom, as a foot or a falling robot hits the ground, a lot.
+constexpr double kSteadiness = 4.0;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -26,9 +30,11 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 /// For the twist of T_after_before (update exp(twist) * T), and the step of `far`.
 struct System {
   Matrix7d H = Matrix7d::Zero();
+  Matrix6d H_expected = Matrix6d::Zero();  ///< what is expected adds to H
   Vector7d g = Vector7d::Zero();
   double weighted = 0, weights = 0;  ///< sums of weighted squared residuals (in sigmas), of weights
   double squared_px = 0;
+  double cost = 0;
   int inliers = 0;
 
   /// Adds J'wJ and J'wr of one residual in standard deviations.
@@ -66,13 +72,28 @@ void addSight(const Sight& l, const PinholeCamera& camera, const SightMotion& at
   system.add(J.row(0), error.x(), weight);
   system.add(J.row(1), error.y(), weight);
   if (l.after_m > 0) system.add(dq.row(2) / depth_sigma, depth_error, weight);
+  system.cost -= 0.5 * kCauchyScale * kCauchyScale * std::log(weight);
   if (distance2 > kInlierSigmas * kInlierSigmas) return;
   ++system.inliers;
   system.squared_px += error.squaredNorm() * sigma_px * sigma_px;
 }
 
-System build(const std::vector<Sight>& sights, const PinholeCamera& camera, const SightMotion& at) {
+/// The twist from the expected motion is small wherever it has weight: its derivative is taken as
+/// the identity.
+void addExpected(const ExpectedStep& expected, const SightMotion& at, System& system) {
+  const Vector6d twist = logSe3(at.T_after_before * expected.T_before_after);
+  const Matrix6d information = inverse(expected.covariance);
+  const double distance2 = twist.dot(information * twist);
+  const double weight = (kSteadiness + 6.0) / (kSteadiness + distance2);
+  system.H_expected = weight * information;
+  system.g.head<6>() += weight * information * twist;
+  system.cost += 0.5 * (kSteadiness + 6.0) * std::log1p(distance2 / kSteadiness);
+}
+
+System build(const std::vector<Sight>& sights, const PinholeCamera& camera,
+             const std::optional<ExpectedStep>& expected, const SightMotion& at) {
   System system;
+  if (expected) addExpected(*expected, at, system);
   for (const Sight& sight : sights) addSight(sight, camera, at, system);
   system.H(6, 6) += kFarInformation;
   system.g[6] += kFarInformation * (at.far - 1.0);
@@ -81,11 +102,14 @@ System build(const std::vector<Sight>& sights, const PinholeCamera& camera, cons
 
 }  // namespace
 
-bool fitMotion(const std::vector<Sight>& sights, const PinholeCamera& camera, SightMotion& motion) {
+bool fitMotion(const std::vector<Sight>& sights, const PinholeCamera& camera,
+               const std::optional<ExpectedStep>& expected, SightMotion& motion) {
   System system;
   for (int i = 0; i < kMaxIterations; ++i) {
-    system = build(sights, camera, motion);
-    const Vector7d step = system.H.ldlt().solve(-system.g);
+    system = build(sights, camera, expected, motion);
+    Matrix7d H = system.H;
+    H.topLeftCorner<6, 6>() += system.H_expected;
+    const Vector7d step = H.ldlt().solve(-system.g);
     const Vector6d twist = step.head<6>();
     if (!step.allFinite() || twist.norm() > 1.0) return false;
     motion.T_after_before = expSe3(twist) * motion.T_after_before;
@@ -94,8 +118,11 @@ bool fitMotion(const std::vector<Sight>& sights, const PinholeCamera& camera, Si
   }
   motion.inliers = system.inliers;
   motion.squared_px = system.squared_px;
+  motion.cost = system.cost;
   // How much worse than assumed the corners are: blurred, of a misplaced color camera.
   const double scale = std::max(1.0, system.weighted / system.weights);
+  // What was expected follows from the steps before: in a chain of them its error would be counted
+  // as if each were independent.
   const Matrix7d inverse = system.H.ldlt().solve(Matrix7d::Identity());
   motion.covariance = scale * inverse.topLeftCorner<6, 6>();
   return true;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "posefusion/core/camera.hpp"
 #include "posefusion/core/se3.hpp"
+#include "posefusion/tracking/sparse_motion.hpp"
 
 namespace pf {
 
@@ -30,10 +32,14 @@ struct SightMotion {
   Matrix6d covariance = Matrix6d::Zero();  ///< of the twist of T_after_before
   int inliers = 0;
   double squared_px = 0;  ///< reprojection, summed over the inliers
+  /// Minus log-likelihood of the sights and of what was expected, up to a constant.
+  double cost = 0;
 };
 
-/// Least squares over reprojection and inverse depth with Cauchy's weights, from a first guess;
-/// false when it leads nowhere. The covariance grows with the residuals.
-bool fitMotion(const std::vector<Sight>& sights, const PinholeCamera& camera, SightMotion& motion);
+/// Least squares over reprojection and inverse depth with Cauchy's weights and over what is
+/// expected, from a first guess; false when it leads nowhere. The covariance grows with the
+/// residuals.
+bool fitMotion(const std::vector<Sight>& sights, const PinholeCamera& camera,
+               const std::optional<ExpectedStep>& expected, SightMotion& motion);
 
 }  // namespace pf

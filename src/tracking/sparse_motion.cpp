@@ -27,6 +27,9 @@ constexpr double kHeldShare = 0.5;
 // Errors that all corners share (the sensor's distortion, the rolling of edges) do not average out.
 constexpr double kSharedTranslation_m = 0.003;
 constexpr double kSharedRotation_rad = 0.0012;
+// How fast the speed of a camera on a robot or in a hand changes (standard deviation).
+constexpr double kSpeedChange_m_s2 = 5.0;
+constexpr double kTurnChange_rad_s2 = 10.0;
 // See SparseMotion::isSure().
 constexpr int kSureInliers = 40;
 constexpr double kSureShare = 0.5;
@@ -109,29 +112,43 @@ bool guess(const std::vector<Sight>& landmarks, const PinholeCamera& camera,
   return T_after_before.matrix().allFinite();
 }
 
-/// From a first guess; false where too few agree.
-bool refine(const std::vector<Sight>& sights, const PinholeCamera& camera, SightMotion& motion) {
-  return fitMotion(sights, camera, motion) && motion.inliers >= kMinMatches &&
-         motion.inliers >= kMinInlierShare * static_cast<double>(sights.size());
-}
+/// Looks for motions that the sights agree on, and keeps the likeliest.
+class MotionSearch {
+ public:
+  MotionSearch(const std::vector<Sight>& sights, const PinholeCamera& camera,
+               const std::optional<ExpectedStep>& expected)
+      : sights_(sights), camera_(camera), expected_(expected) {}
 
-/// The motion that the sights agree on, looked for near the expected one first.
-bool fit(const std::vector<Sight>& sights, const PinholeCamera& camera,
-         const std::optional<Eigen::Isometry3d>& expected, SightMotion& motion) {
-  if (expected) {
-    motion.T_after_before = expected->inverse();
-    const double enough = kHeldShare * static_cast<double>(sights.size());
-    if (refine(sights, camera, motion) && motion.inliers >= enough) return true;
-    motion = {};
+  void tryFrom(const Eigen::Isometry3d& T_after_before) {
+    SightMotion motion;
+    motion.T_after_before = T_after_before;
+    if (!fitMotion(sights_, camera_, expected_, motion)) return;
+    if (motion.inliers < kMinMatches || motion.inliers < shareOf(kMinInlierShare)) return;
+    if (!best_ || motion.cost < best_->cost) best_ = motion;
   }
-  // RANSAC's answer can be a mirrored one where the corners lie in a plane.
-  if (guess(sights, camera, motion.T_after_before) && refine(sights, camera, motion)) return true;
-  motion = {};
-  return refine(sights, camera, motion);
-}
+
+  /// Near the expected motion first, and elsewhere where less than half of the sights agree on it.
+  const std::optional<SightMotion>& search() {
+    if (expected_) tryFrom(expected_->T_before_after.inverse());
+    if (best_ && best_->inliers >= shareOf(kHeldShare)) return best_;
+    Eigen::Isometry3d T_after_before;
+    if (guess(sights_, camera_, T_after_before)) tryFrom(T_after_before);
+    // RANSAC's answer can be a mirrored one where the corners lie in a plane.
+    if (!best_) tryFrom(Eigen::Isometry3d::Identity());
+    return best_;
+  }
+
+ private:
+  double shareOf(double share) const { return share * static_cast<double>(sights_.size()); }
+
+  const std::vector<Sight>& sights_;
+  const PinholeCamera& camera_;
+  const std::optional<ExpectedStep>& expected_;
+  std::optional<SightMotion> best_;
+};
 
 SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera,
-                      const std::optional<Eigen::Isometry3d>& expected) {
+                      const std::optional<ExpectedStep>& expected) {
   SparseMotion motion;
   const auto far = std::stable_partition(sights.begin(), sights.end(),
                                          [](const Sight& l) { return l.hasDepth(); });
@@ -139,13 +156,14 @@ SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera,
   if (near >= kEnoughNear) sights.erase(far, sights.end());
   motion.matches = static_cast<int>(sights.size());
   if (near < kMinNear || motion.matches < kMinMatches) return motion;
-  SightMotion best;
-  if (!fit(sights, camera, expected, best)) return motion;
-  motion.inliers = best.inliers;
+  MotionSearch search(sights, camera, expected);
+  const std::optional<SightMotion>& best = search.search();
+  if (!best) return motion;
+  motion.inliers = best->inliers;
   motion.found = true;
-  motion.rmse_px = std::sqrt(best.squared_px / best.inliers);
-  motion.T_before_after = best.T_after_before.inverse();
-  motion.covariance = best.covariance;
+  motion.rmse_px = std::sqrt(best->squared_px / best->inliers);
+  motion.T_before_after = best->T_after_before.inverse();
+  motion.covariance = best->covariance;
   motion.covariance.diagonal().head<3>().array() += kSharedTranslation_m * kSharedTranslation_m;
   motion.covariance.diagonal().tail<3>().array() += kSharedRotation_rad * kSharedRotation_rad;
   return motion;
@@ -155,6 +173,11 @@ SparseMotion estimate(std::vector<Sight> sights, const PinholeCamera& camera,
 
 bool SparseMotion::isSure() const {
   return found && inliers >= kSureInliers && inliers >= kSureShare * matches;
+}
+
+ExpectedStep steadyStep(const Eigen::Isometry3d& T_before_after, double step_s, double since_s) {
+  return {T_before_after, independentCovariance(kSpeedChange_m_s2 * since_s * step_s,
+                                                kTurnChange_rad_s2 * since_s * step_s)};
 }
 
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,

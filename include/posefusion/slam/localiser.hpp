@@ -130,8 +130,15 @@ class Localiser {
     /// where that moment's error put it.
     Matrix6d covariance_to_view = Matrix6d::Zero();
     Vector6d velocity = Vector6d::Zero();  ///< twist per second, camera frame
-    cv::Mat depth_m;                       ///< full size
+    std::int64_t velocity_ns = 0;          ///< when it was measured; 0: it was not
+    Matrix6d velocity_covariance = Matrix6d::Zero();
+    cv::Mat depth_m;  ///< full size
     SmallImage small;
+
+    void forgetVelocity() {
+      velocity.setZero();
+      velocity_ns = 0;
+    }
   };
 
   /// Of a frame: when it was taken, and whether it is sharp.
@@ -142,13 +149,17 @@ class Localiser {
 
   /// Writes the motion since the frame before to `location`; returns the prediction that follows.
   PosePrior expect(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                   const ModelView& view, const std::optional<MotionPrior>& told,
+                   const ModelView* view, const std::optional<MotionPrior>& told,
                    Location& location);
+  const ModelView* viewBefore(const ModelView& last, const ViewRenderer& render) const;
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
-                       const ModelView& view) const;
+                       const ModelView* view) const;
   /// T_before_after as the camera moved before.
   Eigen::Isometry3d atConstantVelocity(double elapsed_s) const;
   PosePrior predict(const Location& location, double elapsed_s) const;
+  /// A place to start from, and little more: of a lost camera images alone have to say where it
+  /// is. The way that it was carried along may have gone astray, by corners on people above all.
+  static PosePrior startAt(const Eigen::Isometry3d& T_map_camera);
   /// An alignment, and what is thought of it.
   struct Attempt {
     TrackingResult result;

@@ -25,6 +25,17 @@ struct SparseMotion {
   bool isSure() const;
 };
 
+/// The motion between two frames as it is expected before they are compared.
+struct ExpectedStep {
+  Eigen::Isometry3d T_before_after = Eigen::Isometry3d::Identity();
+  Matrix6d covariance =
+      Matrix6d::Identity();  ///< of the twist (m, rad) in the later camera's frame
+};
+
+/// The step of a camera that goes on as it moved `since_s` before its end: the longer ago, the more
+/// may its speed have changed since.
+ExpectedStep steadyStep(const Eigen::Isometry3d& T_before_after, double step_s, double since_s);
+
 /// What is known of the corners' surroundings.
 struct FlowScene {
   const cv::Mat& before_m;  ///< depth of the earlier frame, full size, CV_32FC1 in metres, 0 =
@@ -36,8 +47,7 @@ struct FlowScene {
   /// The earlier frame, any size: CV_8UC1, 0 = a person's pixel. Empty: no person is in view.
   cv::Mat before_still{};
   DepthSensor sensor{};
-  /// T_before_after as it is expected, which is tried first; none: nothing is expected.
-  std::optional<Eigen::Isometry3d> expected{};
+  std::optional<ExpectedStep> expected{};  ///< none: nothing is expected
 };
 
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
