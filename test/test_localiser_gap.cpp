@@ -25,7 +25,8 @@ class LocaliserGapTest : public ::testing::Test {
     return location;
   }
   /// `walking` more corners move on alike, by `walk_px`.
-  Location see(int i, const cv::Rect& gap, int walking = 0, const cv::Point2f& walk_px = {}) {
+  Location see(int i, const cv::Rect& gap, int walking = 0, const cv::Point2f& walk_px = {},
+               bool forced = false) {
     SparseFlow flow{kStep_ns * (i - 1), kStep_ns * i, {}, {}, {}};
     for (int k = 0; k < walking + kCorners; ++k) {
       const cv::Point2f at(static_cast<float>(gap.x + 3 + (k * 7) % (gap.width - 6)),
@@ -36,7 +37,7 @@ class LocaliserGapTest : public ::testing::Test {
     }
     SurfelRenderer().render(map_, frame_.camera, kIdentity, {}, view_);
     points_.assign(view_, frame_.sensor);
-    return localiser_.locate(frame_, flow.to_ns, flow, false, view_,
+    return localiser_.locate(frame_, flow.to_ns, flow, forced, view_,
                              {[&](const Eigen::Isometry3d&) {
                                 return RenderedModel{points_, kIdentity};
                               },
@@ -44,10 +45,11 @@ class LocaliserGapTest : public ::testing::Test {
   }
 
   /// The wall in this part of the picture, and nothing elsewhere.
-  void show(const cv::Rect& gap) {
+  void show(const cv::Rect& gap, const cv::Rect& person = {}) {
     RgbdFrame frame{0, cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90)),
                     cv::Mat::zeros(120, 160, CV_32FC1), 1e-3, smallCamera()};
     frame.depth(gap).setTo(2.0F);
+    frame.depth(person).setTo(1.0F);
     frame_.assign(frame, cv::Mat(), fullResolution());
   }
 
@@ -82,6 +84,17 @@ TEST_F(LocaliserGapTest, OfTwoMotionsThatAsManyCornersShowTheSteadyOneIsBelieved
     ASSERT_TRUE(location.motion.found);
     EXPECT_LT(location.motion.T_before_after.translation().norm(), 0.005) << walk_px;
   }
+}
+
+TEST_F(LocaliserGapTest, CornersOnAPersonBeforeTheMapAreLeftOutAfterABlurredFrameToo) {
+  const cv::Rect gap(0, 0, 160, 120), person(90, 0, 70, 120);
+  look(5, gap);
+  const int all = see(++last_, gap, kCorners).motion.matches;
+  show(gap, person);
+  see(++last_, gap, kCorners, {}, true);
+  const SparseMotion motion = see(++last_, gap, kCorners).motion;
+  ASSERT_TRUE(motion.found);
+  EXPECT_LT(motion.matches, 0.7 * all);
 }
 
 TEST_F(LocaliserGapTest, TheWayThatALostCameraWasCarriedDoesNotTellItsPlace) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "posefusion/core/stamps.hpp"
 #include "posefusion/tracking/sparse_motion.hpp"
 
 namespace pf {
@@ -49,11 +48,9 @@ void ExpectedMotion::follow(const ModelView& view, const RgbdFrame& frame, const
   FlowScene scene{before_m_, depth_m, flow.from_ns == view.stamp_ns ? &view : nullptr};
   if (!before_mask_.empty()) scene.before_still = before_mask_ == 0;
   scene.sensor = sensor_;
-  if (constant_velocity_.isKnown()) {
-    scene.expected = steadyStep(
-        T_view_before.inverse() * constant_velocity_.predict(view, flow.to_ns),
-        secondsBetween(flow.from_ns, flow.to_ns), secondsBetween(view.stamp_ns, flow.to_ns));
-  }
+  // A place to look first, and no more: of a jerk corners tell all.
+  scene.expected =
+      ExpectedStep{T_view_before.inverse() * constant_velocity_.predict(view, flow.to_ns)};
   const SparseMotion step = estimateMotion(withoutMasked(flow, before_mask_), scene, frame.camera);
   if (step.isSure()) steps_.push_back({flow.from_ns, flow.to_ns, step.T_before_after});
 }

@@ -21,8 +21,6 @@ class MotionPredictor {
  public:
   /// T_view_camera for the frame at `stamp_ns` given the newest view.
   Eigen::Isometry3d predict(const ModelView& view, std::int64_t stamp_ns);
-  /// Two views were seen: else it predicts none.
-  bool isKnown() const { return frames_ > 1; }
   void reset() { *this = MotionPredictor(); }
 
  private:

@@ -25,7 +25,8 @@ struct SparseMotion {
   bool isSure() const;
 };
 
-/// The motion between two frames as it is expected before they are compared.
+/// The motion between two frames as it is expected before they are compared; by its default
+/// covariance, only where it is looked for first.
 struct ExpectedStep {
   Eigen::Isometry3d T_before_after = Eigen::Isometry3d::Identity();
   Matrix6d covariance =
