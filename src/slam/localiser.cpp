@@ -45,7 +45,7 @@ Location Localiser::locate(const WorkingFrame& frame, std::int64_t stamp_ns, con
   pace_ = frame.pace;
   const double elapsed_s = kNanosecond * static_cast<double>(stamp_ns - previous_.stamp_ns);
   const PosePrior prior =
-      expect(frame, stamp_ns, flow, viewBefore(view, render.view), told, location);
+      expect(frame, stamp_ns, flow, viewBefore(flow, view, render.view), told, location);
   const bool was_lost = state_ == TrackingState::lost;
   const Attempt aligned =
       align(frame, forced, was_lost ? startAt(prior.T_map_camera) : prior, render);

@@ -45,8 +45,10 @@ PosePrior Localiser::expect(const WorkingFrame& frame, std::int64_t stamp_ns,
   return prior;
 }
 
-/// The map where the frame before is believed to be; null: that is not known.
-const ModelView* Localiser::viewBefore(const ModelView& last, const ViewRenderer& render) const {
+/// The map where the frame that `flow` begins with is believed to be; null: that is not known.
+const ModelView* Localiser::viewBefore(const SparseFlow& flow, const ModelView& last,
+                                       const ViewRenderer& render) const {
+  if (flow.from_ns != previous_.stamp_ns) return nullptr;
   if (trusted_ns_ == previous_.stamp_ns) return &last;
   const bool is_known = state_ != TrackingState::lost || belief_ > 0;
   return is_known ? &render(previous_.T_map_camera) : nullptr;
@@ -59,7 +61,7 @@ SparseMotion Localiser::measure(const WorkingFrame& frame, std::int64_t stamp_ns
   const bool follows = flow.from_ns == previous_.stamp_ns;  // else frames were left out between
   FlowScene scene{follows ? previous_.depth_m : cv::Mat(),
                   frame.full_depth_m,
-                  follows ? view : nullptr,
+                  view,
                   &landmarks_,
                   previous_.T_map_camera,
                   previous_.small.still,

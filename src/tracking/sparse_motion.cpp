@@ -119,14 +119,6 @@ class MotionSearch {
                const std::optional<ExpectedStep>& expected)
       : sights_(sights), camera_(camera), expected_(expected) {}
 
-  void tryFrom(const Eigen::Isometry3d& T_after_before) {
-    SightMotion motion;
-    motion.T_after_before = T_after_before;
-    if (!fitMotion(sights_, camera_, expected_, motion)) return;
-    if (motion.inliers < kMinMatches || motion.inliers < shareOf(kMinInlierShare)) return;
-    if (!best_ || motion.cost < best_->cost) best_ = motion;
-  }
-
   /// Near the expected motion first, and elsewhere where less than half of the sights agree on it.
   const std::optional<SightMotion>& search() {
     if (expected_) tryFrom(expected_->T_before_after.inverse());
@@ -139,6 +131,14 @@ class MotionSearch {
   }
 
  private:
+  void tryFrom(const Eigen::Isometry3d& T_after_before) {
+    SightMotion motion;
+    motion.T_after_before = T_after_before;
+    if (!fitMotion(sights_, camera_, expected_, motion)) return;
+    if (motion.inliers < kMinMatches || motion.inliers < shareOf(kMinInlierShare)) return;
+    if (!best_ || motion.cost < best_->cost) best_ = motion;
+  }
+
   double shareOf(double share) const { return share * static_cast<double>(sights_.size()); }
 
   const std::vector<Sight>& sights_;

@@ -151,7 +151,8 @@ class Localiser {
   PosePrior expect(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                    const ModelView* view, const std::optional<MotionPrior>& told,
                    Location& location);
-  const ModelView* viewBefore(const ModelView& last, const ViewRenderer& render) const;
+  const ModelView* viewBefore(const SparseFlow& flow, const ModelView& last,
+                              const ViewRenderer& render) const;
   SparseMotion measure(const WorkingFrame& frame, std::int64_t stamp_ns, const SparseFlow& flow,
                        const ModelView* view) const;
   /// T_before_after as the camera moved before.

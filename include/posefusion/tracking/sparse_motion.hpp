@@ -54,11 +54,12 @@ struct FlowScene {
 /// Motion from the corners of `flow` that lie on the still world (not well before a stable surface
 /// of the map: unmasked people; nor, without depth of their own, next to people or to something
 /// near: a person too close for the sensor is not beyond its range): P3P with RANSAC (Fischler and
-/// Bolles 1981; fixed seed), then least squares over reprojection and inverse depth with Cauchy's
-/// weights. Known landmarks stand where the map has them, so that the motion does not drift from
-/// frame to frame; where they do not agree, it is measured from the earlier frame alone. The camera
-/// is that of the full image, without distortion. Not found with fewer than a dozen corners or when
-/// too few of them agree.
+/// Bolles 1981; fixed seed) where few agree with what is expected, then least squares over
+/// reprojection and inverse depth with Cauchy's weights and over what is expected, which is left
+/// out of the covariance. Known landmarks stand where the map has them, so that the motion does not
+/// drift from frame to frame; where they do not agree, it is measured from the earlier frame alone.
+/// The camera is that of the full image, without distortion. Not found with fewer than a dozen
+/// corners or when too few of them agree.
 SparseMotion estimateMotion(const SparseFlow& flow, const FlowScene& scene,
                             const PinholeCamera& camera);
 
