@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "free_space.hpp"
 #include "insertion.hpp"
 #include "posefusion/core/error.hpp"
 #include "posefusion/core/parallel.hpp"
 #include "posefusion/frame/depth_filter.hpp"
 #include "posefusion/map/visibility.hpp"
+#include "seen_space.hpp"
 #include "surfel_update.hpp"
 
 namespace pf {
@@ -20,24 +22,6 @@ namespace {
 constexpr int kSweptInView = 10, kSweptElsewhere = 30;
 // At once where a frame refuted more than one of so many surfels: things that went away.
 constexpr std::size_t kAtOnceShare = 50;
-
-/// Where all of 3x3 pixels see at least that far (m); 0 where the centre sees nothing.
-POSEFUSION_SIMD_CLONES
-void nearestOf3x3(const float* above, const float* row, const float* below, float* nearest,
-                  int width) {
-  constexpr float kFar = 1e9F;
-  for (int u = 0; u < width; ++u) {
-    const int left = u > 0 ? u - 1 : 0, right = u < width - 1 ? u + 1 : width - 1;
-    float smallest = kFar;
-    for (const float* d : {above, row, below}) {
-      const float a = d[left], b = d[u], c = d[right];
-      const float fa = a > 0 ? a : kFar, fb = b > 0 ? b : kFar, fc = c > 0 ? c : kFar;
-      const float ab = fa < fb ? fa : fb, abc = ab < fc ? ab : fc;
-      smallest = smallest < abc ? smallest : abc;
-    }
-    nearest[u] = row[u] > 0 ? smallest : 0.0F;
-  }
-}
 
 std::string sizeText(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
@@ -54,25 +38,12 @@ int factorOf(const cv::Size& size, const cv::Size& working, const char* name) {
   return factor;
 }
 
-/// `seen_m`: depth of the frame, that past the mapped range, and that of what was taken out:
-/// whatever a ray meets, a person or the rim of one, all before that is free. `input_m`: work
-/// memory.
-void findFreeSpace(const WorkingFrame& frame, const cv::Mat& input_depth_m, cv::Mat& input_m,
-                   cv::Mat& seen_m, cv::Mat& free_m) {
-  cv::max(frame.depth_m, frame.beyond_m, seen_m);
-  if (!input_depth_m.empty()) {
-    const int factor = factorOf(input_depth_m.size(), seen_m.size(), "the input depth");
-    shrinkDepth(input_depth_m, factor, frame.sensor, input_m);
-    cv::max(seen_m, input_m, seen_m);
-  }
-  free_m.create(seen_m.size(), CV_32FC1);
-  parallelFor(seen_m.rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      nearestOf3x3(seen_m.ptr<float>(std::max(0, v - 1)), seen_m.ptr<float>(v),
-                   seen_m.ptr<float>(std::min(seen_m.rows - 1, v + 1)), free_m.ptr<float>(v),
-                   seen_m.cols);
-    }
-  });
+/// The depth with people at the size of the working frame; empty when there is none.
+void shrinkInput(const cv::Mat& input_depth_m, const WorkingFrame& frame, cv::Mat& input_m) {
+  input_m.release();
+  if (input_depth_m.empty()) return;
+  const int factor = factorOf(input_depth_m.size(), frame.depth_m.size(), "the input depth");
+  shrinkDepth(input_depth_m, factor, frame.sensor, input_m);
 }
 
 /// The depth of the people of a mask at the size of the working frame; empty when there are none.
@@ -97,9 +68,11 @@ void findPeople(const cv::Mat& mask, const cv::Mat& input_depth_m, const Working
   shrinkDepth(full_m, factor, frame.sensor, person_m);
 }
 
-/// No surfel farther than this (m) agrees with the frame, nor does the frame see through it.
-double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& person_m) {
-  double farthest = 0;
+/// Of a surfel farther than this (m) the frame says nothing. In a gap it does of all that can be
+/// measured.
+double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& person_m,
+               const cv::Mat& gaps) {
+  double farthest = cv::countNonZero(gaps) > 0 ? sensor.max_depth_m : 0.0;
   for (const cv::Mat& depth_m : {seen_m, person_m}) {
     double most = 0;
     if (!depth_m.empty()) cv::minMaxLoc(depth_m, nullptr, &most);
@@ -118,10 +91,15 @@ struct Fuser::Scratch {
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   std::vector<std::uint32_t> emptied;  // blocks of which it refuted much
   SurfelArrays fresh;                  // new surfels, in the order of their pixels
+  SeenSpace seen_space;                // of the frames before
 };
 
 Fuser::Fuser() : scratch_(std::make_unique<Scratch>()) {}
 Fuser::~Fuser() = default;
+
+void Fuser::follow(const Deformation& deformation) { scratch_->seen_space.follow(deformation); }
+
+void Fuser::forget() { scratch_->seen_space.clear(); }
 
 FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                          SurfelMap& map, const FusionOptions& options) {
@@ -135,20 +113,26 @@ FusionCounts Fuser::fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_m
   FusionCounts counts;
   update(frame, T_map_camera, options, map, counts);
   counts.removed = clean(map);
-  surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence, s.fresh);
+  surfelsOfUnexplained(frame, T_map_camera, options, map.frame(), s.evidence,
+                       s.seen_space.from(T_map_camera, options.fragment), s.fresh);
   counts.inserted = map.add(s.fresh, options.fragment);
+  if (options.may_remove_stable) {
+    s.seen_space.add(s.evidence.free_m, frame, T_map_camera, options.fragment, map.frame());
+  }
   return counts;
 }
 
 void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                    const FusionOptions& options, SurfelMap& map, FusionCounts& counts) {
   Scratch& s = *scratch_;
-  findFreeSpace(frame, options.input_depth_m, s.input_m, s.seen_m, s.evidence.free_m);
+  shrinkInput(options.input_depth_m, frame, s.input_m);
+  findFreeSpace(frame, s.input_m, s.seen_m, s.evidence.free_m);
+  findGaps(s.seen_m, options.mask, s.evidence.gaps);
   s.evidence.measured.assign(frame, map.config().shrink);
   s.evidence.explained.clear(s.evidence.measured);
   s.evidence.known_behind.assign(frame.depth_m.size());
   s.visible = visibleBlocks(map, frame.camera, {options.fragment, T_map_camera},
-                            reachOf(frame.sensor, s.seen_m, s.evidence.person_m));
+                            reachOf(frame.sensor, s.seen_m, s.evidence.person_m, s.evidence.gaps));
   const auto ranges = rangesOf(map, s.visible);
   parallelFor(s.visible.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) map.blocks_.change(s.visible[k]);

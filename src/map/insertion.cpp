@@ -58,6 +58,15 @@ void writeSurfel(const Wanted& w, const MeasuredSurface::Level& level, const Rig
   s.odds[i] = static_odds::supported(0.0F, frame.pace.worth());
 }
 
+/// Whether what a pixel sees came before a known surface, or into space that was seen free.
+bool isNewcomer(const Wanted& w, const MeasuredSurface::Level& level, const Evidence& evidence,
+                const SeenSpace::FromCamera& seen) {
+  const float agreement = evidence.measured.agreement(w.z);
+  return evidence.known_behind.has(w.working_u, w.working_v, w.z, agreement) ||
+         seen.wasFree(level.rayX(w.u) * w.z, level.rayY(w.v) * w.z, w.z,
+                      std::max(kWellBefore_m, kSeenThrough * agreement));
+}
+
 /// A row of pixels of one level.
 struct PixelRow {
   int level, v;
@@ -67,7 +76,7 @@ struct PixelRow {
 
 void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                           const FusionOptions& options, int now, const Evidence& evidence,
-                          SurfelArrays& surfels) {
+                          const SeenSpace::FromCamera& seen, SurfelArrays& surfels) {
   std::vector<PixelRow> rows;
   for (int i = 0; i < evidence.measured.levels(); ++i) {
     for (int v = 0; v < evidence.measured[i].depth_m.rows; ++v) rows.push_back({i, v});
@@ -91,8 +100,7 @@ void surfelsOfUnexplained(const WorkingFrame& frame, const Eigen::Isometry3d& T_
       const MeasuredSurface::Level& level = evidence.measured[rows[k].level];
       forEachWanted(evidence, rows[k].level, rows[k].v, working, [&](const Wanted& w) {
         writeSurfel(w, level, to_map, frame, options, next, surfels);
-        if (evidence.known_behind.has(w.working_u, w.working_v, w.z,
-                                      evidence.measured.agreement(w.z))) {
+        if (isNewcomer(w, level, evidence, seen)) {
           surfels.odds[next] += static_odds::kNewcomer;
         }
         ++next;

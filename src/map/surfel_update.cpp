@@ -20,10 +20,13 @@ constexpr float kUnnoticedFrames = 2;  // of contradiction, a frame
 // Seen well behind, in all of 3x3 pixels: surer than a view that agrees, which may be of something
 // else at that depth.
 constexpr float kSeenThroughFrames = 2;
+// Nothing measured and another colour: hidden by something too near, or gone. Two seconds of a
+// person in the way must not remove what was seen for one.
+constexpr float kOtherFrames = 1.0F / 6.0F;
 // A surfel whose plane leans further than this is not updated: its depth on the ray means little.
 constexpr float kMinCosine = 0.2F;
-// What lies this far in front of a stable surface may have come there.
-constexpr float kWellBefore_m = 0.25F;
+// Grey levels, in any channel: more than three standard deviations of `tracking.photometric_sigma`.
+constexpr float kOtherColor = 40.0F;
 // A disc explains the pixels whose rays meet it well inside, and no more than a few.
 constexpr float kExplainedShare = 0.9F, kMostExplained_px = 6.0F;
 
@@ -113,12 +116,15 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
       return false;
     }
   }
-  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + 1.5F * tolerance) {
+  if (evidence_.free_m.at<float>(p.v, p.u) > p.z + kSeenThrough * tolerance) {
     if (contradictOne(s, i, kSeenThroughFrames)) ++result.refuted;
     return false;
   }
   const Measurement m = measure(p);
-  if (m.depth <= 0) return false;
+  if (m.depth <= 0) {
+    if (isOther(s, p) && contradictOne(s, i, kOtherFrames)) ++result.refuted;
+    return false;
+  }
   const float off = std::abs(m.depth - p.z);
   if (p.z - m.depth > kWellBefore_m && map_.isStable(s, i)) {
     evidence_.known_behind.mark(p.u, p.v, m.depth);
@@ -144,6 +150,19 @@ bool SurfelUpdate::updateOne(SurfelArrays& s, const Place& p, Result& result) co
   }
   merge(s, p, m, cosine);
   return true;
+}
+
+/// Where nothing is measured, the surface may yet be there: shiny, dark, or in the shadow of the
+/// projector; but then its colour is. Of another colour it is hidden by something too near, or it
+/// has gone, and what is seen is out of range: a person has left the wall of a hall.
+bool SurfelUpdate::isOther(const SurfelArrays& s, const Place& p) const {
+  if (evidence_.gaps.at<std::uint8_t>(p.v, p.u) == 0) return false;
+  const std::size_t i = p.surfel;
+  const cv::Vec3b& color = p.level->color.ptr<cv::Vec3b>(p.level_v)[p.level_u];
+  const float off = std::max({std::abs(exposed(color[0], options_) - s.r[i]),
+                              std::abs(exposed(color[1], options_) - s.g[i]),
+                              std::abs(exposed(color[2], options_) - s.b[i])});
+  return off > kOtherColor;
 }
 
 /// Surfels made close to a person not long ago, and not seen now, may have been mapped from that

@@ -18,10 +18,16 @@
 
 namespace pf {
 
+/// What lies this far in front of a stable surface may have come there.
+constexpr float kWellBefore_m = 0.25F;
+/// Seen so many tolerances beyond a surface, a frame sees through it.
+constexpr float kSeenThrough = 1.5F;
+
 /// Evidence of a frame on the space along its pixels' rays. Planes have the working frame's size.
 struct Evidence {
   MeasuredSurface measured;
   cv::Mat free_m;    ///< CV_32FC1: seen to be empty up to here in all of 3x3 pixels; 0: not known
+  cv::Mat gaps;      ///< CV_8UC1: see findGaps()
   cv::Mat person_m;  ///< CV_32FC1: depth of people and what else moves, 0 = none; may be empty
   NearPeople near_people;  ///< around all people in view
   Explained explained;
@@ -85,6 +91,7 @@ class SurfelUpdate {
   std::size_t findPlaces(const SurfelArrays& s, const SurfelRange& range,
                          const ProjectedRange& seen, std::uint32_t& next, Places& places) const;
   bool updateOne(SurfelArrays& s, const Place& p, Result& result) const;
+  bool isOther(const SurfelArrays& s, const Place& p) const;
   float agreement(float z) const { return evidence_.measured.agreement(z); }
   bool isLayer(const Place& p, float measured, float cosine) const;
   void doubt(SurfelArrays& s, const Place& p, Result& result) const;

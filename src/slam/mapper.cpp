@@ -195,6 +195,7 @@ std::size_t Mapper::add(const SurfelArrays& surfels) { return state_->map.add(su
 void Mapper::reset(const Eigen::Isometry3d& T_map_camera) {
   State& s = *state_;
   s.map.clear();
+  s.fuser.forget();
   s.T_world_map.reset();
   s.view = s.seen = ModelView();
   s.wanted_view.reset();

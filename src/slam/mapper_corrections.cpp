@@ -144,6 +144,7 @@ void Mapper::State::follow(const std::vector<Deformation>& deformations,
     T_new_old = deformation.at(map.frame(), where) * T_new_old;
     where = deformation.fragmentAfter(where);
     deform(map, deformation, blocks);
+    fuser.follow(deformation);
   }
   if (!moves) return;
   if (lays_layers) mayBeDouble(blocks);

@@ -21,8 +21,8 @@ constexpr float kFrame = 4.4F / 30.0F;
 /// which counts twice, are enough to remove it.
 constexpr float kMost = 24.0F * kFrame;
 
-/// What lies in front of a known surface has come there, perhaps a person that the detector misses:
-/// it takes a second longer to count as part of the room.
+/// What lies in front of a known surface, or in space that was seen free, has come there, perhaps a
+/// person that the detector misses: it takes a second longer to count as part of the room.
 constexpr float kNewcomer = -30.0F * kFrame;
 
 /// Contradicted to below this (0.29) it is no longer kept: what remains may be mapped anew.

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "posefusion/frame/working_frame.hpp"
+#include "posefusion/graph/deformation.hpp"
 #include "posefusion/map/surfel_map.hpp"
 
 namespace pf {
@@ -39,14 +40,16 @@ struct FusionCounts {
   std::size_t removed = 0;
 };
 
-/// Fuses frames into a map. Keeps its work memory between calls. Not thread safe.
+/// Fuses frames into a map. Keeps its work memory between calls, and for 20 s how far frames saw.
+/// Not thread safe.
 ///
 /// Seen from the surfels, so that each is changed by exactly one pixel and threads never meet: an
 /// active surfel in view projects to a pixel; if the depth there agrees and it does not turn its
 /// back, it moves along the pixel's ray by the running weighted mean (weights 1 / variance of the
-/// sensor) and its odds rise; if the frame sees well behind it, they fall. Pixels that no surfel
-/// explains become new surfels. Refuted, or unstable and not supported for long: removed. So a
-/// person fused by mistake disappears once the room behind is seen.
+/// sensor) and its odds rise; if the frame sees well behind it, or something of another colour that
+/// is out of range, they fall. Pixels that no surfel explains become new surfels, of lower odds
+/// where frames of the last 20 s saw free space. Refuted, or unstable and not supported for long:
+/// removed. So a person fused by mistake disappears once the room behind is seen.
 class Fuser {
  public:
   Fuser();
@@ -55,6 +58,12 @@ class Fuser {
   /// Throws InputError when the images of the options do not have the size of the input frame.
   FusionCounts fuse(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_camera,
                     SurfelMap& map, const FusionOptions& options = {});
+
+  /// The map was corrected: what frames saw moves with it.
+  void follow(const Deformation& deformation);
+
+  /// Another map begins.
+  void forget();
 
  private:
   struct Scratch;
