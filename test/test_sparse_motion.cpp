@@ -63,6 +63,7 @@ class SparseMotionTest : public ::testing::Test {
   SparseMotion estimate(const ModelView* view = nullptr) const {
     FlowScene scene{before_m_, after_m_, view};
     scene.expected = expected_;
+    scene.before_still = still_;
     return estimateMotion(flow_, scene, camera_);
   }
 
@@ -78,6 +79,7 @@ class SparseMotionTest : public ::testing::Test {
   PinholeCamera camera_ = vga();
   Eigen::Isometry3d T_before_after_;
   cv::Mat before_m_, after_m_;
+  cv::Mat still_;
   SparseFlow flow_;
   std::optional<ExpectedStep> expected_;
 };
@@ -98,6 +100,20 @@ TEST_F(SparseMotionTest, LeavesOutWhatWalks) {
   EXPECT_LE(motion.inliers, 85);
   EXPECT_LT(error(motion).head<3>().norm(), 5e-3);
   EXPECT_LT(error(motion).tail<3>().norm(), 2e-3);
+}
+
+TEST_F(SparseMotionTest, CornersWhosePlaceAPersonTouchesWeighLess) {
+  addCorners(60, 0, 0.3);
+  still_ = cv::Mat(60, 80, CV_8UC1, cv::Scalar(255));
+  for (std::size_t i = 0; i < flow_.after.size(); i += 2) {
+    flow_.after[i].x += 1.5F;  // dragged
+    const cv::Point2f& at = flow_.before[i];
+    still_.at<std::uint8_t>(static_cast<int>(at.y) / 8, static_cast<int>(at.x) / 8) = 0;
+  }
+  const SparseMotion weighed = estimate();
+  still_.release();
+  const SparseMotion all_alike = estimate();
+  EXPECT_LT(2 * error(weighed).norm(), error(all_alike).norm());
 }
 
 TEST_F(SparseMotionTest, LeavesOutWhatStandsBeforeAStableSurfaceOfTheMap) {

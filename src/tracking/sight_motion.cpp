@@ -47,7 +47,7 @@ struct System {
 };
 
 void addSight(const Sight& l, const PinholeCamera& camera, const SightMotion& at, System& system) {
-  const double sigma_px = kCornerSigma * cornerPixel(camera.width);
+  const double sigma_px = l.spread * kCornerSigma * cornerPixel(camera.width);
   // Of a corner without depth all is in units of its distance.
   const double unit = l.hasDepth() ? 1.0 : at.far * l.far_inverse;
   const Eigen::Vector3d t = at.T_after_before.translation();
@@ -73,7 +73,9 @@ void addSight(const Sight& l, const PinholeCamera& camera, const SightMotion& at
   system.add(J.row(1), error.y(), weight);
   if (l.after_m > 0) system.add(dq.row(2) / depth_sigma, depth_error, weight);
   system.cost -= 0.5 * kCauchyScale * kCauchyScale * std::log(weight);
-  if (distance2 > kInlierSigmas * kInlierSigmas) return;
+  // Those beside people agree no sooner than others.
+  const double apart2 = l.spread * l.spread * error.squaredNorm() + depth_error * depth_error;
+  if (apart2 > kInlierSigmas * kInlierSigmas) return;
   ++system.inliers;
   system.squared_px += error.squaredNorm() * sigma_px * sigma_px;
 }

@@ -14,6 +14,7 @@ namespace pf {
 struct Sight {
   Eigen::Vector3d before;  ///< m, in the earlier camera's frame
   Eigen::Vector2d after_px;
+  double spread = 1.0;       ///< standard deviation of that, over a corner's apart from people
   double after_m = 0;        ///< depth in the later frame, 0 = not known
   double after_sigma_m = 0;  ///< of that depth
   /// Where it has no depth of its own: half the inverse depth (1/m) of what is beside it, and
