@@ -9,6 +9,10 @@ namespace {
 
 constexpr int kSoon = 10, kLater = 40;  // frames until stable: of a part of the room, of a newcomer
 
+Eigen::Isometry3d turnedAway() {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitY()));
+}
+
 /// A map of nothing, after a second in which a wall 3 m away was seen.
 class SeenFree : public ::testing::Test {
  protected:
@@ -39,9 +43,7 @@ TEST_F(SeenFree, WhatComesIntoItIsStableOnlyLater) {
 }
 
 TEST_F(SeenFree, NothingIsKnownOfWhatWasNotInView) {
-  Eigen::Isometry3d turned = kIdentity;
-  turned.linear() = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  EXPECT_GT(stableOfBoard(kSoon, turned), kMostOfBoard);
+  EXPECT_GT(stableOfBoard(kSoon, turnedAway()), kMostOfBoard);
 }
 
 TEST_F(SeenFree, IsThatOfItsFragment) {
@@ -63,9 +65,7 @@ TEST_F(SeenFree, IsForgottenWithTheMap) {
 }
 
 TEST_F(SeenFree, IsForgottenAfterAWhile) {
-  Eigen::Isometry3d turned = kIdentity;
-  turned.linear() = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  for (int i = 0; i < 22 * 30; ++i) fuser_.fuse(scene(0), turned, map_);
+  for (int i = 0; i < 22 * 30; ++i) fuser_.fuse(scene(0), turnedAway(), map_);
   EXPECT_GT(stableOfBoard(kSoon), kMostOfBoard);
 }
 
@@ -80,12 +80,13 @@ TEST(SeenFreeOnProbation, IsNotBelieved) {
   EXPECT_GT(map.stableCount(), kMostOfBoard);
 }
 
-/// Depth nowhere; of one colour.
-WorkingFrame gap(const cv::Scalar& color) {
+/// Of one colour, with depth nowhere, or in every `measured_row`-th row.
+WorkingFrame gap(const cv::Scalar& color, int measured_row = 0) {
   RgbdFrame frame;
   frame.camera = smallCamera();
   frame.color = cv::Mat(120, 160, CV_8UC3, color);
   frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(0));
+  for (int v = 0; measured_row > 0 && v < 120; v += measured_row) frame.depth.row(v).setTo(1.0);
   WorkingFrame working;
   working.assign(frame, cv::Mat(), fullResolution());
   return working;
@@ -132,14 +133,7 @@ TEST(Gap, IsNoPixelBesideAMeasuredOne) {
   SurfelMap map{MapConfig{}};
   fuseOften(20, scene(0, 1.5), map);
   const auto odds = map.collect().odds;
-  RgbdFrame frame;
-  frame.camera = smallCamera();
-  frame.color = cv::Mat(120, 160, CV_8UC3, kGrey);
-  frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(0));
-  for (int v = 0; v < 120; v += 3) frame.depth.row(v).setTo(1.0);  // a thing that lets gaps
-  WorkingFrame working;
-  working.assign(frame, cv::Mat(), fullResolution());
-  fuseOften(1, working, map);
+  fuseOften(1, gap(kGrey, 3), map);  // through a thing that lets gaps
   EXPECT_EQ(map.collect().odds, odds);
 }
 

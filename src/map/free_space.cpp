@@ -45,15 +45,14 @@ void findFreeSpace(const WorkingFrame& frame, const cv::Mat& input_m, cv::Mat& s
   });
 }
 
-void findGaps(const cv::Mat& seen_m, const cv::Mat& mask, cv::Mat& gaps) {
-  cv::Mat known = seen_m > 0;
+void findGaps(const cv::Mat& seen_m, const cv::Mat& mask, cv::Mat& people, cv::Mat& gaps) {
+  cv::compare(seen_m, 0, gaps, cv::CMP_GT);
   if (!mask.empty()) {
-    cv::Mat people;
     cv::resize(mask, people, seen_m.size(), 0, 0, cv::INTER_AREA);
-    cv::bitwise_or(known, people > 0, known);
+    cv::bitwise_or(gaps, people, gaps);
   }
-  cv::dilate(known, known, cv::Mat());
-  cv::bitwise_not(known, gaps);
+  cv::dilate(gaps, gaps, cv::Mat());
+  cv::compare(gaps, 0, gaps, cv::CMP_EQ);
 }
 
 }  // namespace pf

@@ -16,7 +16,7 @@ void findFreeSpace(const WorkingFrame& frame, const cv::Mat& input_m, cv::Mat& s
 
 /// `gaps`: CV_8UC1, 255 where none of 3x3 pixels sees anything, and none is under the mask of
 /// people (CV_8UC1, a multiple of the size; may be empty): out of range, hidden by something too
-/// near, shiny, dark, or in the shadow of the projector.
-void findGaps(const cv::Mat& seen_m, const cv::Mat& mask, cv::Mat& gaps);
+/// near, shiny, dark, or in the shadow of the projector. `people`: work memory.
+void findGaps(const cv::Mat& seen_m, const cv::Mat& mask, cv::Mat& people, cv::Mat& gaps);
 
 }  // namespace pf

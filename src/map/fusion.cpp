@@ -86,7 +86,7 @@ double reachOf(const DepthSensor& sensor, const cv::Mat& seen_m, const cv::Mat& 
 
 /// What is kept between calls.
 struct Fuser::Scratch {
-  cv::Mat seen_m, full_m, input_m;
+  cv::Mat seen_m, full_m, input_m, people;
   Evidence evidence;
   std::vector<std::uint32_t> visible;  // blocks in view of the frame
   std::vector<std::uint32_t> emptied;  // blocks of which it refuted much
@@ -127,7 +127,7 @@ void Fuser::update(const WorkingFrame& frame, const Eigen::Isometry3d& T_map_cam
   Scratch& s = *scratch_;
   shrinkInput(options.input_depth_m, frame, s.input_m);
   findFreeSpace(frame, s.input_m, s.seen_m, s.evidence.free_m);
-  findGaps(s.seen_m, options.mask, s.evidence.gaps);
+  findGaps(s.seen_m, options.mask, s.people, s.evidence.gaps);
   s.evidence.measured.assign(frame, map.config().shrink);
   s.evidence.explained.clear(s.evidence.measured);
   s.evidence.known_behind.assign(frame.depth_m.size());

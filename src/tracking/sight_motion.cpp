@@ -74,8 +74,8 @@ void addSight(const Sight& l, const PinholeCamera& camera, const SightMotion& at
   if (l.after_m > 0) system.add(dq.row(2) / depth_sigma, depth_error, weight);
   system.cost -= 0.5 * kCauchyScale * kCauchyScale * std::log(weight);
   // Those beside people agree no sooner than others.
-  const double apart2 = l.spread * l.spread * error.squaredNorm() + depth_error * depth_error;
-  if (apart2 > kInlierSigmas * kInlierSigmas) return;
+  const double plain2 = l.spread * l.spread * error.squaredNorm() + depth_error * depth_error;
+  if (plain2 > kInlierSigmas * kInlierSigmas) return;
   ++system.inliers;
   system.squared_px += error.squaredNorm() * sigma_px * sigma_px;
 }

@@ -38,15 +38,20 @@ constexpr double kBesidePerson = 2.5;
 constexpr int kSureInliers = 40;
 constexpr double kSureShare = 0.5;
 
+/// The pixel of an image of another size that shows the same; may lie outside.
+cv::Point pixelIn(const cv::Size& size, const PinholeCamera& camera, const cv::Point2f& pixel) {
+  return {static_cast<int>(pixel.x) * size.width / camera.width,
+          static_cast<int>(pixel.y) * size.height / camera.height};
+}
+
 /// How far the map's stable surface is that the earlier camera would see at a pixel (m); 0: none.
 float mappedAt(const FlowScene& scene, const PinholeCamera& camera, const cv::Point2f& pixel) {
   if (scene.view == nullptr) return 0.0F;
   const ModelView& view = *scene.view;
-  const int u = static_cast<int>(pixel.x) * view.camera.width / camera.width;
-  const int v = static_cast<int>(pixel.y) * view.camera.height / camera.height;
-  if (u < 0 || v < 0 || u >= view.depth_m.cols || v >= view.depth_m.rows) return 0.0F;
-  const bool stable = view.stable.empty() || view.stable.at<std::uint8_t>(v, u) != 0;
-  return stable ? view.depth_m.at<float>(v, u) : 0.0F;
+  const cv::Point at = pixelIn({view.camera.width, view.camera.height}, camera, pixel);
+  if (!cv::Rect({}, view.depth_m.size()).contains(at)) return 0.0F;
+  const bool stable = view.stable.empty() || view.stable.at<std::uint8_t>(at) != 0;
+  return stable ? view.depth_m.at<float>(at) : 0.0F;
 }
 
 /// Does something stand well before the map at a corner? What has no depth (z = 0) where the map
@@ -55,18 +60,18 @@ bool isBeforeMap(const DepthSensor& sensor, float mapped_m, double z) {
   return mapped_m > 0 && mapped_m - static_cast<float>(z) > 2.0F * sensor.tolerance(mapped_m, 5.0F);
 }
 
-/// Whether `apart` is 0 at a pixel of the full image.
-bool isPerson(const cv::Mat& apart, const PinholeCamera& camera, const cv::Point2f& pixel) {
-  const int u = static_cast<int>(pixel.x) * apart.cols / camera.width;
-  const int v = static_cast<int>(pixel.y) * apart.rows / camera.height;
-  return cv::Rect({}, apart.size()).contains({u, v}) && apart.at<std::uint8_t>(v, u) == 0;
-}
-
-/// Where the windows of corners show part of a person: CV_8UC1, 0 there, of any size.
+/// Where the windows of corners show no part of a person: CV_8UC1, 0 elsewhere. Pixels of `still`
+/// count for the window beside them: of the localiser's, an eightieth of the picture's width, so
+/// that 3x3 are about a window.
 cv::Mat apartFromPeople(const cv::Mat& still) {
   cv::Mat apart;
   if (!still.empty()) cv::erode(still, apart, cv::Mat());
   return apart;
+}
+
+bool isBesidePerson(const cv::Mat& apart, const PinholeCamera& camera, const cv::Point2f& pixel) {
+  const cv::Point at = pixelIn(apart.size(), camera, pixel);
+  return cv::Rect({}, apart.size()).contains(at) && apart.at<std::uint8_t>(at) == 0;
 }
 
 /// `landmarks` may be null: then all places come from the earlier frame's depth.
@@ -99,7 +104,7 @@ std::vector<Sight> sightsOf(const SparseFlow& flow, const FlowScene& scene,
     } else {
       sight.after_m = depthAround(scene.after_m, scene.sensor, b).z_m;
     }
-    if (!apart.empty() && isPerson(apart, camera, a)) sight.spread = kBesidePerson;
+    if (isBesidePerson(apart, camera, a)) sight.spread = kBesidePerson;
     sight.after_sigma_m = scene.sensor.sigma(static_cast<float>(sight.after_m));
     sights.push_back(sight);
   }
